@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import inspect
 import operator
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from difflib import get_close_matches
 from typing import Any, TypeVar
 
@@ -34,6 +34,19 @@ def count(name: str, value: Any, least: int = 1) -> int | None:
     return whole
 
 
+def instance(name: str, value: Any, of: type, called: str) -> None:
+    """Checks that an argument is an object of a class."""
+    if not isinstance(value, of):
+        raise UsageError.saying(f"`{name}` is a `{called}`, not {value!r}")
+
+
+def word(name: str, value: Any) -> str:
+    """A text."""
+    if not isinstance(value, str):
+        raise UsageError.saying(f"`{name}` is a text, not {value!r}")
+    return value
+
+
 def listed(name: str, value: Any) -> list[str]:
     """Names of a list, each of them once; a text is a single name."""
     if isinstance(value, str):
@@ -59,6 +72,15 @@ def by_name(name: str, value: Any) -> dict[str, Any]:
     return dict(value)
 
 
+def same_shape(what: str, values: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Arrays by name, broadcast to one shape."""
+    try:
+        return dict(zip(values, np.broadcast_arrays(*values.values())))
+    except ValueError:
+        shapes = ", ".join(f"`{name}` {value.shape}" for name, value in values.items() if value.shape)
+        raise UsageError.saying(f"the values of the {what} have different shapes: {shapes}") from None
+
+
 def together(values: Mapping[str, Any], more: Mapping[str, Any]) -> dict[str, Any]:
     """Values of a mapping and of keyword arguments, each name in one of them."""
     both = next((name for name in values if name in more), None)
@@ -67,8 +89,42 @@ def together(values: Mapping[str, Any], more: Mapping[str, Any]) -> dict[str, An
     return {**values, **more}
 
 
+def labels(value: Any) -> list | None:
+    """Names along the last axis of a labelled array: the columns of a table, the index of a series, the coordinate of an array of
+    xarray. `None` of unlabelled arrays, and of those that are numbered from 0."""
+    if isinstance(value, Mapping):
+        return None
+    if hasattr(value, "dims") and hasattr(value, "indexes"):
+        found = value.indexes.get(value.dims[-1]) if value.dims else None
+    else:
+        # A table of Arrow has names of columns besides the columns.
+        kinds = (getattr(value, kind, None) for kind in ("column_names", "columns", "index"))
+        found = next((kind for kind in kinds if kind is not None), None)
+    if found is None or callable(found) or not hasattr(found, "__iter__"):
+        return None
+    names = list(found)
+    return None if names == list(range(len(names))) else names
+
+
+def ordered(what: str, value: Any, names: Sequence[str], kind: str = "design variable") -> np.ndarray:
+    """An array of numbers, whose last axis has these names. A labelled array may have them in any order, with others."""
+    own = labels(value)
+    if own is None:
+        return numbers(what, value)
+    own = listed(f"names of {what}", own)
+    missing = next((name for name in names if name not in own), None)
+    if missing is not None:
+        raise UsageError.saying(f"{what}: the {kind} `{missing}` is missing; there are " + ", ".join(f"`{name}`" for name in own))
+    if hasattr(value, "columns") or hasattr(value, "column_names"):
+        # Other columns may be texts.
+        return np.column_stack([numbers(f"{what}, column `{name}`", value[name]) for name in names])
+    return numbers(what, value)[..., [own.index(name) for name in names]]
+
+
 def numbers(what: str, value: Any) -> np.ndarray:
     """An array of numbers."""
+    if np.ma.is_masked(value) or (isinstance(value, (list, tuple)) and any(np.ma.is_masked(one) for one in value)):
+        raise UsageError.saying(f"{what}: some values are masked; give all of them, or NaN where NaN has a meaning")
     try:
         found = np.asarray(value)
         # Texts of digits are no numbers either.

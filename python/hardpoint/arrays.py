@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Container
+
 import numpy as np
 
 
@@ -9,3 +11,10 @@ def frozen(array: np.ndarray) -> np.ndarray:
     """Makes the array read-only, so that no reader changes shared results."""
     array.flags.writeable = False
     return array
+
+
+def free(name: str, *taken: Container[str]) -> str:
+    """A name, or the first one with `_` after it that is not taken."""
+    while any(name in names for names in taken):
+        name += "_"
+    return name

@@ -38,7 +38,8 @@ try:
 except ImportError as missing:
     raise ImportError(f"hardpoint.dask needs distributed, fsspec and pyarrow ({missing}): pip install 'hardpoint[dask]'") from missing
 
-from . import __version__
+from . import __version__, arguments, files
+from .arguments import by_name, count, instance, number
 from .errors import StudyError, UsageError
 from .model import Model, Progress, listener
 from .studies import Study, outcome
@@ -74,6 +75,7 @@ NAME = re.compile(r"(?P<table>designs|curves)-(?P<first>\d{8,})\.parquet")
 PARTIAL = re.compile(r"\.(designs|curves)-\d{8,}\.parquet\.[0-9a-f]{32}\.partial")
 
 
+@arguments.named
 def sweep(
     model: Model,
     client: Client,
@@ -94,13 +96,17 @@ def sweep(
     empties it first. `progress` receives numbers of designs. Raises `StudyError` if no part has ended and no worker was busy for
     `patience` seconds; `math.inf` waits for workers indefinitely.
     """
+    _check(model, client)
+    part, report = count("part", part) or PART, listener(progress)
+    at = _at(store, storage_options)
     listed = asked.pop("designs", None)
     asked = json.loads(json.dumps({name: value for name, value in asked.items() if value is not None}, default=_plain))
-    count = model.sweep_plan(**asked, **({} if listed is None else {"designs": listed})).count
+    designs = model.sweep_plan(**asked, **({} if listed is None else {"designs": listed})).count
     listed = None if listed is None else (Path(listed).name, Path(listed).read_bytes())
-    return _stored(_Sweep(model, count, part, asked, listed), client, store, overwrite, progress, patience, storage_options)
+    return _stored(_Sweep(model, designs, part, asked, listed), client, at, overwrite, report, _patience(patience))
 
 
+@arguments.named
 def monte_carlo(
     model: Model,
     client: Client,
@@ -117,10 +123,14 @@ def monte_carlo(
     """Solves the Monte Carlo designs of `model.tolerance(samples=samples, seed=seed)` in every case, and stores their variables and
     metrics like `sweep`. The default of `seed` is that of the model file.
     """
-    if samples < 1:
+    _check(model, client)
+    part, report = count("part", part) or PART, listener(progress)
+    at = _at(store, storage_options)
+    designs, seed = count("samples", samples, 0), count("seed", seed, 0)
+    if not designs:
         raise UsageError.saying("there are no designs; give at least one sample")
     _drawn(model, [0], seed)
-    return _stored(_Drawn(model, int(samples), part, seed), client, store, overwrite, progress, patience, storage_options)
+    return _stored(_Drawn(model, designs, part, seed), client, at, overwrite, report, _patience(patience))
 
 
 class Searches(NamedTuple):
@@ -133,6 +143,7 @@ class Searches(NamedTuple):
     """All searches, in order of starts; number 0 starts from the nominal design."""
 
 
+@arguments.named
 def multi_start(
     model: Model,
     client: Client,
@@ -143,19 +154,22 @@ def multi_start(
     patience: float = PATIENCE,
 ) -> Searches:
     """Optimises the design (`model.optimize`) from several starts, each on a worker. `progress` receives numbers of searches."""
-    if starts < 1:
-        raise UsageError.saying("there are no starts; give at least one start")
-    _check(client)
+    _check(model, client)
     report, found = listener(progress), {}
-    with closing(_each(client, _search, _Search(model, iterations), range(starts), lambda first: f"start {first}", patience)) as searches:
+    wanted, iterations = count("starts", starts, 0), count("iterations", iterations, 0)
+    if not wanted:
+        raise UsageError.saying("there are no starts; give at least one start")
+    asked = _Search(model, iterations)
+    with closing(_each(client, _search, asked, range(wanted), lambda first: f"start {first}", _patience(patience))) as searches:
         for first, search in searches:
             found[first] = outcome(model, *search)
             if report:
-                report(len(found), starts)
-    studies = tuple(found[first] for first in range(starts))
+                report(len(found), wanted)
+    studies = tuple(found[first] for first in range(wanted))
     return Searches(studies[_best([study.facts for study in studies])], studies)
 
 
+@arguments.named
 def opened(store: Store, storage_options: Mapping[str, Any] | None = None) -> Stored:
     """Results of `sweep` or `monte_carlo` in a store."""
     fs, root = _at(store, storage_options)
@@ -342,7 +356,7 @@ def _title(name: str, unit: str) -> str:
 
 def _drawn(model: Model, numbers: list[int], seed: int | None) -> np.ndarray:
     """Designs of a tolerance study by number, `[design, variable]`, in the model's units."""
-    return model._native.drawn_designs(numbers, seed)
+    return model._native.drawn_designs(numbers, model._studied, seed)
 
 
 class _Search(NamedTuple):
@@ -352,7 +366,7 @@ class _Search(NamedTuple):
 
 def _search(asked: _Search, first: int) -> tuple[str, list[float] | None, list[float] | None]:
     """Search from one start: its result as JSON, the optimised design with rounded numbers, and the exact one."""
-    return asked.model._native.optimize(first, 1, asked.iterations, 1, None)
+    return asked.model._native.optimize(asked.model._studied, first, 1, asked.iterations, 1, None)
 
 
 KEPT = 1e-8
@@ -379,9 +393,18 @@ def _best(found: list[dict]) -> int:
 # Tasks
 
 
-def _check(client: Client) -> None:
+def _check(model: Model, client: Client) -> None:
+    instance("model", model, Model, "hardpoint.Model")
+    instance("client", client, Client, "distributed.Client")
     if client.asynchronous:
         raise UsageError.saying("the client is asynchronous; create it with `Client(...)` outside of coroutines")
+
+
+def _patience(seconds: Any) -> float:
+    found = number("`patience`", seconds)
+    if not found >= 0:
+        raise UsageError.saying(f"`patience` is a number of seconds, not {seconds!r}")
+    return found
 
 
 def _itself(shared: Any) -> Any:
@@ -537,16 +560,14 @@ def _solve(asked: _Part, first: int) -> int:
 def _stored(
     work: _Work,
     client: Client,
-    store: Store,
+    at: tuple[fsspec.AbstractFileSystem, str],
     overwrite: bool,
-    progress: Progress,
+    report: Callable[[int, int], Any] | None,
     patience: float,
-    storage_options: Mapping[str, Any] | None,
 ) -> Stored:
-    _check(client)
-    fs, root = _at(store, storage_options)
+    fs, root = at
     record = _begun(fs, root, work, overwrite)
-    report, done, failed = listener(progress), 0, 0
+    done = failed = 0
     named = lambda first: f"designs {first} to {work.last(first) - 1}"  # noqa: E731
     with closing(_each(client, _solve, _Part(work, fs, root), range(0, work.count, work.part), named, patience)) as parts:
         for first, more in parts:
@@ -572,7 +593,12 @@ def _stored(
 
 def _at(store: Store, options: Mapping[str, Any] | None) -> tuple[fsspec.AbstractFileSystem, str]:
     """File system of a store, and its path there."""
-    fs, root = fsspec.core.url_to_fs(os.fspath(store), **(options or {}))
+    name = files.where(store)
+    try:
+        fs, root = fsspec.core.url_to_fs(name, **by_name("storage_options", options))
+    # An unknown kind of URL, one whose package is not installed, or options that it does not have.
+    except (ValueError, ImportError, TypeError) as error:
+        raise UsageError.saying(f"`{name}` is not a valid store: {error}") from error
     return fs, root.rstrip("/")
 
 

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .arrays import frozen
-from .errors import Diagnostic, UsageError, diagnostics, unknown
+from .arrays import free, frozen
+from .errors import Diagnostic, UsageError, diagnostics, index_of
 
 if TYPE_CHECKING:
     from .model import Model
@@ -62,9 +62,7 @@ class Designs:
 
     def metric(self, name: str) -> np.ndarray:
         """Values of a metric for all designs."""
-        if name not in self.metric_names:
-            raise unknown("metric", name, self.metric_names)
-        return self.metrics[:, self.metric_names.index(name)]
+        return self.metrics[:, index_of("metric", name, self.metric_names)]
 
     def to_xarray(self):
         """Data set of all results, with labels."""
@@ -79,9 +77,10 @@ class Designs:
         return xarray.Dataset(data, {**names, "time": self.times})
 
     def to_pandas(self):
-        """Table of variables and metrics, with a row for each design."""
+        """Table of variables and metrics, with a row for each design. A metric with the name of a variable ends in `_`."""
         import pandas
 
         columns = dict(zip(self.variables, self.designs.T))
-        columns.update(zip(self.metric_names, self.metrics.T))
+        for name, values in zip(self.metric_names, self.metrics.T):
+            columns[free(name, columns)] = values
         return pandas.DataFrame(columns)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -122,12 +123,22 @@ class HardpointWarning(UserWarning):
     """Warnings and notes of the engine."""
 
 
-def unknown(what: str, name: str, known) -> UsageError:
+def index_of(what: str, name: object, known: Iterable[str]) -> int:
+    """Index of a name in a list of known names."""
+    names = list(known)
+    if not isinstance(name, str) or name not in names:
+        raise unknown(what, name, names)
+    return names.index(name)
+
+
+def unknown(what: str, name: object, known) -> UsageError:
     """Error for an unknown name, with the most similar known name."""
+    if not isinstance(name, str):
+        return UsageError.saying(f"the name of a {what} is a text, not {name!r}")
     from difflib import get_close_matches
 
     known = list(known)
-    near = get_close_matches(str(name), known, 1)
+    near = get_close_matches(name, known, 1)
     if near:
         help = f"did you mean `{near[0]}`?"
     elif known:

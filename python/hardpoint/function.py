@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from .arguments import checked, count, listed, numbers
-from .errors import CannotFollow, StudyError, UsageError, unknown
+from .arguments import checked, count, instance, listed, ordered
+from .errors import CannotFollow, StudyError, UsageError, index_of, unknown
 from .model import Model
 
 
@@ -61,8 +61,9 @@ class Function:
         stopped: float | None = None,
         workers: int | None = None,
     ):
+        instance("model", model, Model, "hardpoint.Model")
         self.model = model
-        if stopped is not None and (isinstance(stopped, (bool, str)) or not np.isscalar(stopped)):
+        if isinstance(stopped, (bool, str, bytes)) or (stopped is not None and not np.isscalar(stopped)):
             raise UsageError.saying(f"`stopped` is a number for designs that do not move to their end, such as `math.nan`, not {stopped!r}")
         self.stopped: float | None = None if stopped is None else float(stopped)
         """Value of designs that do not move to their end; `None` if they raise an exception."""
@@ -132,7 +133,7 @@ class Function:
 
     def design(self, x) -> dict[str, float]:
         """Design with these values."""
-        return dict(zip(self.variables, numbers("design", x).ravel()))
+        return dict(zip(self.variables, ordered("design", x, self.variables).ravel()))
 
     def __call__(self, x) -> np.ndarray:
         """Values of all outputs, `[size]`."""
@@ -173,13 +174,10 @@ class Function:
 
     def part(self, name: str, numbers: np.ndarray) -> np.ndarray:
         """Values of one of its parts."""
-        for part in self.parts:
-            if part.name == name:
-                return numbers[part.place]
-        raise unknown("part", name, [part.name for part in self.parts])
+        return np.asarray(numbers)[self.parts[index_of("part", name, [part.name for part in self.parts])].place]
 
     def _solved(self, x, derivatives: bool) -> tuple[np.ndarray, np.ndarray | None]:
-        x = np.ascontiguousarray(numbers("design", x)).ravel()
+        x = np.ascontiguousarray(ordered("design", x, self.variables)).ravel()
         key = x.tobytes()
         if self._last and self._last[0] == key and (self._last[1] or not derivatives):
             return self._last[2], self._last[3]
@@ -188,9 +186,9 @@ class Function:
         return self._last[2], self._last[3]
 
     def _batch(self, designs, derivatives: bool, workers: int | None = None) -> tuple[np.ndarray, np.ndarray | None]:
-        rows = numbers("designs", designs)
+        rows = ordered("designs", designs, self.variables)
         if rows.ndim != 2 or rows.shape[1] != len(self.variables) or not np.isfinite(rows).all():
-            given = rows.shape[1:] if len(rows) == 1 else rows.shape
+            given = rows.shape[1:] if rows.ndim > 1 and len(rows) == 1 else rows.shape
             raise UsageError.saying(
                 f"the function takes {len(self.variables)} finite numbers, one for each variable, or rows of them; given are {given}"
             )

@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING, Any, Union
 import numpy as np
 
 from . import _native, display, files, tools
-from .arguments import by_name, checked, count, listed, number, numbers, together
+from .arguments import by_name, checked, count, labels, listed, number, numbers, ordered, together, word
 from .arrays import frozen
 from .designs import Designs
-from .errors import Diagnostic, HardpointWarning, MotionStopped, UsageError, unknown
+from .errors import Diagnostic, HardpointWarning, MotionStopped, UsageError, index_of, unknown
 from .positions import Positions, Solver, names
 from .run import Run
 from .studies import DriverTable, Map, Study, SweepResult, outcome
@@ -27,7 +27,8 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 Design = Union[Mapping[str, float], "ArrayLike", None]
-"""A design: values by the names of design variables, or all of them in order. Missing values, and NaN, are nominal."""
+"""A design: values by the names of design variables, in a mapping or a labelled array such as a series of pandas, or all of them in
+order. Missing values, and NaN, are nominal."""
 Progress = Union[Callable[[int, int], Any], bool, None]
 """Receives the amount done and the total; `True` writes them to the standard error."""
 
@@ -78,7 +79,8 @@ class Model:
     """A mechanism, read and checked, with its plan of solution.
 
     A model is immutable; all methods are thread-safe, and long ones release the interpreter lock. Models can be pickled. For a model
-    with cases, select one: `model.case("bump").run()` or `model.run(case="bump")`; studies use all of them.
+    with cases, select one: `model.case("bump").run()` or `model.run(case="bump")`. Searches, tolerances and sweeps are over all cases, and
+    those of `model.case("bump")` over that case, as with `--case`; a fit (`calibrate`) and maps do not depend on cases.
 
     `hardpoint.read`, `hardpoint.parse`, `Model.new` and `Model.from_dict` make models, and `model.with_(...)` a changed one.
     """
@@ -145,8 +147,8 @@ class Model:
         return Model(self._native, self._named(name), self._added, self._folder)
 
     def with_coordinates(self, tilts: bool = False) -> Model:
-        """Returns the model with additional design variables: every coordinate of its hardpoints (`A.x`), and with `tilts` every tilt of
-        its joint axes (`hinge.tilt_x`)."""
+        """Returns the model with additional design variables: every coordinate of its hardpoints (`A.x`) that is not a variable already,
+        and with `tilts` every tilt of its joint axes (`hinge.tilt_x`). Of a coordinate that is a variable, `A.x` is another name."""
         return Model(self._native.with_variables(True, tilts), self._case, (True, tilts or self._added[1]), self._folder)
 
     def __repr__(self) -> str:
@@ -184,7 +186,9 @@ class Model:
     @classmethod
     def from_dict(cls, document: Mapping[str, Any], *, folder: str | os.PathLike | None = None) -> Model:
         """Builds a model from the contents of a file, such as `model.to_dict()` of another model; files that it names are in `folder`."""
-        where = None if folder is None else os.fspath(folder)
+        where = None if folder is None else files.where(folder)
+        if not isinstance(document, Mapping):
+            raise UsageError.saying(f"the contents of a model file are a dictionary, such as `model.to_dict()`, not {document!r}")
         name = f"{document.get('name', 'model')}.toml"
         return _opened(_native.parse(written(document), name, folder=where, is_json=True), where)
 
@@ -214,7 +218,7 @@ class Model:
     def _changed(self, changes: Mapping[str, Any]) -> Model:
         text = self._native.merged(written(changes))
         name = self.file if self.file.endswith(CHANGED) else self.file + CHANGED
-        folder = self._folder if self._folder is not None and os.path.isdir(self._folder) else None
+        folder = self._whereabouts
         if folder is None:
             native = _native.parse(text, name, files=dict(self._native.files))
         else:
@@ -225,6 +229,11 @@ class Model:
         if self._case is None or not self.cases or self.cases[self._case] not in whole.cases:
             return whole
         return whole.case(self.cases[self._case])
+
+    @property
+    def _whereabouts(self) -> str | None:
+        """Folder of the model file, if it still exists."""
+        return self._folder if self._folder is not None and os.path.isdir(self._folder) else None
 
     def _moved(self, index: int, times: Any, laws: Mapping[str, Any] | None) -> tuple[Model, int]:
         """Model with other output times and laws in a case, and the index of the case in it."""
@@ -346,8 +355,9 @@ class Model:
     ) -> Designs:
         """Solves many designs in one call, without a Python object per design or step.
 
-        `designs` has a row for each design, with values of `variables`, or of all design variables; or it is a list of dictionaries. The
-        result has `outputs` of an `order` at the output times with the indices `at` (all), the `metrics`, and the `sensitivities` of both.
+        `designs` has a row for each design, with values of `variables`, or of all design variables; or it is a list of dictionaries, or
+        a table such as one of pandas, whose columns are the variables of their names (with `variables`, these columns only). The result
+        has `outputs` of an `order` at the output times with the indices `at` (all), the `metrics`, and the `sensitivities` of both.
         Raises `MotionStopped` if a motion ends early; with `partial` its values are NaN, and `stops` has the reason.
         """
         index = self._index(case)
@@ -373,14 +383,15 @@ class Model:
         or (`auto`) the cheaper of both. NaN for inadmissible variables."""
         names = listed("outputs", outputs)
         order = self._order(order, names)
-        found = self._native.gradients(self._index(case), self._values(design), [self._output(name) for name in names], method)
+        found = self._native.gradients(self._index(case), self._values(design), [self._output(name) for name in names], word("method", method))
         followed = np.array(found["followed"], dtype=bool)
         return frozen(np.where(followed, found["gradients"][..., order], np.nan))
 
     def second_derivatives(
         self, outputs: str | Iterable[str], variables: str | Iterable[str] | None = None, design: Design = None, *, case: str | None = None
     ) -> np.ndarray:
-        """Second derivatives of the values of some outputs by some design variables (all): `[time, output, variable, variable]`."""
+        """Second derivatives of the values of some outputs by some design variables (all): `[time, output, variable, variable]`. NaN for
+        inadmissible variables."""
         names = listed("outputs", outputs)
         chosen = list(self.variables) if variables is None else listed("variables", variables)
         for name in names:
@@ -405,11 +416,16 @@ class Model:
     def what_if(self, design: Design, *, case: str | None = None) -> Study:
         """Effect of a changed design on every measure and metric: exact, and predicted to first and second order.
 
-        As on the command line, coordinates of hardpoints are also variables: `{"tie_rod_outer.z": 2.0}`.
+        As on the command line, coordinates of hardpoints and tilts of joints are also variables:
+        `{"tie_rod_outer.z": 2.0, "lca_pivot.tilt_y": 0.5}`.
         """
         whole = self._whole
-        named = design if design is None or isinstance(design, Mapping) else dict(zip(self.variables, self._values(design)))
-        return outcome(whole, whole._native.what_if(self._index(case), whole._values(named)))
+        given = self._named_values(design)
+        if given is None:
+            given = dict(zip(self.variables, self._values(design)))
+        if any(isinstance(name, str) and whole._known(name) is None for name in given):
+            whole = self.with_coordinates(tilts=True)
+        return outcome(whole, whole._native.what_if(self._index(case), whole._values(given)))
 
     @cached_property
     def _whole(self) -> Model:
@@ -429,7 +445,7 @@ class Model:
     ) -> Study:
         """Optimises the design for the goals of `[optimize]` in the model, in all cases."""
         text, design, exact = self._native.optimize(
-            0, count("starts", starts, 0), count("iterations", iterations, 0), count("workers", workers), listener(progress)
+            self._studied, 0, count("starts", starts, 0), count("iterations", iterations, 0), count("workers", workers), listener(progress)
         )
         return outcome(self, text, design, exact)
 
@@ -451,6 +467,7 @@ class Model:
         named = listed("goals", goals)
         text, design, exact = self._native.trade_off(
             named,
+            self._studied,
             count("points", points, 0),
             count("point", point, 0),
             count("starts", starts, 0),
@@ -470,8 +487,9 @@ class Model:
         progress: Progress = None,
     ) -> Study:
         """Analyses the tolerances of the design variables; `allocate` (`rss`, `worst_case`) finds the loosest tolerances that keep the limits."""
+        rule = None if allocate is None else word("allocate", allocate)
         found = self._native.tolerance(
-            count("samples", samples, 0), count("seed", seed, 0), allocate, count("workers", workers), listener(progress)
+            self._studied, count("samples", samples, 0), count("seed", seed, 0), rule, count("workers", workers), listener(progress)
         )
         return outcome(self, found)
 
@@ -511,25 +529,48 @@ class Model:
             )
         return outcome(self, text, design, design)
 
-    def sweep(self, *, workers: int | None = None, progress: Progress = None, **asked) -> SweepResult:
+    def sweep(
+        self,
+        *,
+        method: str | None = None,
+        samples: int | None = None,
+        seed: int | None = None,
+        levels: int | None = None,
+        ranges: Mapping[str, tuple[float, float]] | None = None,
+        curves: str | Iterable[str] | None = None,
+        designs: str | os.PathLike | None = None,
+        workers: int | None = None,
+        progress: Progress = None,
+    ) -> SweepResult:
         """Solves many designs in all cases, like `hardpoint sweep`: `method` (`sobol`, `latin_hypercube`, `factorial`, `sobol_indices`),
         `samples`, `seed`, `levels`, `ranges` (`{"lca_front_z": (-5, 5)}`), `curves` (names of measures whose curves are stored),
         `designs` (a CSV file of designs)."""
-        columns, curves, text = self.sweep_plan(**asked).run(count("workers", workers), listener(progress))
-        return SweepResult(self, dict(columns), dict(curves), json.loads(text))
+        plan = self.sweep_plan(method=method, samples=samples, seed=seed, levels=levels, ranges=ranges, curves=curves, designs=designs)
+        columns, found, text = plan.run(count("workers", workers), listener(progress))
+        return SweepResult(self, dict(columns), dict(found), json.loads(text))
 
-    def sweep_plan(self, **asked) -> _native.Sweep:
+    def sweep_plan(
+        self,
+        *,
+        method: str | None = None,
+        samples: int | None = None,
+        seed: int | None = None,
+        levels: int | None = None,
+        ranges: Mapping[str, tuple[float, float]] | None = None,
+        curves: str | Iterable[str] | None = None,
+        designs: str | os.PathLike | None = None,
+    ) -> _native.Sweep:
         """Returns the sweep, to be solved in parts."""
-        for name in ("samples", "seed", "levels"):
-            if isinstance(asked.get(name), (int, float, np.generic)):
-                asked[name] = count(name, asked[name], 0)
-        if "designs" in asked:
-            asked["designs"] = files.where(asked["designs"])
-        if asked.get("curves") is not None:
-            asked["curves"] = listed("curves", asked["curves"])
-        asked["ranges"] = {name: list(ends(name, both)) for name, both in by_name("ranges", asked.get("ranges")).items()}
-        if self._case is not None and self.cases:
-            asked["cases"] = [self._case]
+        asked = {
+            "method": None if method is None else word("method", method),
+            "samples": count("samples", samples, 0),
+            "seed": count("seed", seed, 0),
+            "levels": count("levels", levels, 0),
+            "ranges": {name: list(ends(name, both)) for name, both in by_name("ranges", ranges).items()},
+            "curves": None if curves is None else listed("curves", curves),
+            "designs": None if designs is None else files.where(designs),
+            "case": self._studied,
+        }
         return self._native.sweep(json.dumps({key: value for key, value in asked.items() if value is not None}))
 
     # The command's other jobs
@@ -581,17 +622,35 @@ class Model:
         return self._native.edited(self._values(design))
 
     def save(self, path: str | os.PathLike, design: Design = None) -> None:
-        """Writes the model file with a design in it, atomically."""
-        files.write(path, self.text if design is None else self.edited(design))
+        """Writes the model file with a design in it, atomically. In another folder, the files that the model reads are named from
+        there; raises `ModelError` if they are not in that folder or below it."""
+        to = os.path.dirname(os.path.abspath(files.where(path)))
+        files.write(path, self._native.edited(self._values(design), self._whereabouts, to))
+
+    def _named_values(self, design: Any) -> dict[Any, Any] | None:
+        """Values by name, of a mapping or of a labelled array; `None` of an array in order."""
+        if design is None or isinstance(design, Mapping):
+            return dict(design or {})
+        own = labels(design)
+        if own is None or np.ndim(design) != 1:
+            return None
+        listed("names of the design", own)
+        return dict(zip(own, numbers("design", design).tolist()))
 
     def _values(self, design: Design) -> list[float]:
         if design is None:
             return []
-        if isinstance(design, Mapping):
+        given = self._named_values(design)
+        if given is not None:
             values = np.full(len(self.variables), np.nan)
-            for name, value in design.items():
+            names: dict[int, Any] = {}
+            for name, value in given.items():
+                index = self._variable(name)
+                if index in names:
+                    raise UsageError.saying(f"`{names[index]}` and `{name}` are the same design variable; give it once")
+                names[index] = name
                 # None is nominal.
-                values[self._variable(name)] = np.nan if value is None else number(f"design variable `{name}`", value)
+                values[index] = np.nan if value is None else number(f"design variable `{name}`", value)
             return values.tolist()
         values = numbers("design", design)
         if values.shape != (len(self.variables),):
@@ -602,14 +661,20 @@ class Model:
 
     def _rows(self, designs, variables: Sequence[str] | None) -> np.ndarray:
         designs = list(designs) if not hasattr(designs, "shape") and hasattr(designs, "__iter__") else designs
-        if isinstance(designs, list) and designs and isinstance(designs[0], Mapping):
+        if isinstance(designs, list) and any(isinstance(design, Mapping) or labels(design) is not None for design in designs):
             return np.array([self._values(design) for design in designs])
-        given = np.atleast_2d(numbers("designs", designs))
-        chosen = range(len(self.variables)) if variables is None else [self._variable(name) for name in listed("variables", variables)]
+        own = labels(designs)
+        if own is not None and np.ndim(designs) == 1:
+            return np.array([self._values(designs)])
+        if own is not None and variables is None:
+            variables = own
+        names = list(self.variables) if variables is None else listed("variables", variables)
+        chosen = [self._variable(name) for name in names]
+        given = np.atleast_2d(ordered("designs", designs, names))
         if given.ndim != 2 or given.shape[1] != len(chosen):
             raise UsageError.saying(f"designs have a column for each of {len(chosen)} variables; the shape given is {given.shape}")
         rows = np.full((len(given), len(self.variables)), np.nan)
-        rows[:, list(chosen)] = given
+        rows[:, chosen] = given
         return rows
 
     # Names
@@ -625,25 +690,33 @@ class Model:
         return 0
 
     def _named(self, case: str) -> int:
-        if case not in self.cases:
-            raise unknown("case", case, self.cases)
-        return self.cases.index(case)
+        return index_of("case", case, self.cases)
+
+    @property
+    def _studied(self) -> int | None:
+        """Case of studies, if a single one is selected."""
+        return self._case if self.cases else None
+
+    def _known(self, name: str) -> int | None:
+        """Index of a design variable, by its name or as a coordinate of a hardpoint."""
+        return self._variable_index[name] if name in self._variable_index else self._native.variable(name)
 
     def _variable(self, name: str) -> int:
-        if name not in self._variable_index:
+        index = self._known(name) if isinstance(name, str) else None
+        if index is None:
             raise unknown("design variable", name, self.variables)
-        return self._variable_index[name]
+        return index
 
     def _declared(self, name: str) -> Output:
         return self.outputs[list(self.outputs)[self._output(name)]]
 
     def _output(self, name: str) -> int:
-        if name not in self._output_index:
+        if not isinstance(name, str) or name not in self._output_index:
             raise unknown("measure or point", name, self.outputs)
         return self._output_index[name]
 
     def _order(self, order: int | str, names: Iterable[str]) -> int:
-        if order not in ORDERS:
+        if not isinstance(order, (int, str, np.integer)) or order not in ORDERS:
             raise UsageError.saying(f"unknown order `{order}`; there are value (0), rate (1), acceleration (2)")
         for name in names:
             if ORDERS[order] >= len(self._declared(name).columns):
@@ -653,7 +726,11 @@ class Model:
 
 def listener(progress: Progress) -> Callable[[int, int], Any] | None:
     """Receiver of progress reports."""
-    return display.counter() if progress is True else progress or None
+    if progress is None or isinstance(progress, bool):
+        return display.counter() if progress else None
+    if not callable(progress):
+        raise UsageError.saying(f"`progress` is `True`, or a function of the amount done and the total, not {progress!r}")
+    return progress
 
 
 def _opened(native: _native.Model, folder: str | None = None, stacklevel: int = 3) -> Model:
@@ -675,6 +752,7 @@ def parse(text: str, name: str = "model.toml", folder: str | os.PathLike | None 
     """Reads a model from a text; files that it names are in `folder`."""
     if not isinstance(text, str):
         raise UsageError.saying(f"the text of a model is a `str`, not {type(text).__name__}")
+    name = word("name", name)
     where = None if folder is None else files.where(folder)
     return _opened(_native.parse(text, name, folder=where), where)
 
@@ -722,8 +800,8 @@ def _places(at: Any, count: int) -> np.ndarray:
 def ends(name: str, both: Any) -> tuple[float, float]:
     """Both ends of a range."""
     found = numbers(f"range of `{name}`", both)
-    if found.shape != (2,):
-        raise UsageError.saying(f"the range of `{name}` is both of its ends, not {both!r}")
+    if found.shape != (2,) or not np.isfinite(found).all():
+        raise UsageError.saying(f"the range of `{name}` is both of its ends, finite numbers, not {both!r}")
     return float(found[0]), float(found[1])
 
 

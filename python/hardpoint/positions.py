@@ -10,7 +10,7 @@ import numpy as np
 
 from . import _native, arguments
 from .arrays import frozen
-from .errors import CannotFollow, Diagnostic, MotionStopped, UsageError, diagnostics, unknown
+from .errors import CannotFollow, Diagnostic, MotionStopped, UsageError, diagnostics, index_of
 
 if TYPE_CHECKING:
     from .model import Model, Progress
@@ -57,9 +57,7 @@ class Positions:
 
     def derivative(self, name: str, driver: str) -> Any:
         """Exact derivative of a measure or point coordinate by a driver, while all other drivers and the design stay as they are."""
-        if driver not in self.drivers:
-            raise unknown("driver", driver, self.drivers)
-        return self._derivative(name, len(self.model.variables) + list(self.drivers).index(driver), driver)
+        return self._derivative(name, len(self.model.variables) + index_of("driver", driver, self.drivers), driver)
 
     def sensitivity(self, name: str, variable: str) -> Any:
         """Exact derivative of a measure or point coordinate by a design variable, while the drivers stay as they are."""
@@ -82,13 +80,13 @@ class Positions:
         return self._of_body(body, slice(0, 3))
 
     def quaternion(self, body: str) -> np.ndarray:
-        """Orientation of a body's frame, `[..., 4]`: w x y z, unit."""
-        return self._of_body(body, slice(3, 7))
+        """Orientation of a body's frame, `[..., 4]`: w x y z, unit, w >= 0."""
+        found = self._of_body(body, slice(3, 7))
+        # That of a motion is continuous instead.
+        return frozen(np.where(found[..., :1] < 0, -found, found))
 
     def _of_body(self, body: str, place: slice) -> np.ndarray:
-        if body not in self.model.bodies:
-            raise unknown("body", body, self.model.bodies)
-        number = 1 + self.model.bodies.index(body)
+        number = 1 + index_of("body", body, self.model.bodies)
         rows = np.full((len(self), place.stop - place.start), np.nan)
         for k in range(len(self)):
             if k not in self.stops:
@@ -137,14 +135,9 @@ class Solver:
         from .model import listener
 
         for name in given:
-            if name not in self.nominal:
-                raise unknown("driver", name, self.nominal)
+            index_of("driver", name, self.nominal)
         values = {name: number(name, given[name]) if name in given else np.array(start) for name, start in self.nominal.items()}
-        try:
-            shape = np.broadcast_shapes(*(value.shape for value in values.values()))
-        except ValueError:
-            shapes = ", ".join(f"`{name}` {values[name].shape}" for name in given)
-            raise UsageError.saying(f"the values of the drivers have different shapes: {shapes}") from None
+        shape = next(iter(arguments.same_shape("drivers", values).values()), np.empty(())).shape
         drivers = {name: frozen(np.broadcast_to(value, shape).copy()) for name, value in values.items()}
         own = self.model._values(design) or [np.nan] * len(self.model.variables)
         moved = [np.ravel(drivers[name]) - start for name, start in self.nominal.items()]

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any, Union
 import numpy as np
 
 from . import _native, display, plots, stored
-from .arguments import by_name, checked, listed, together
-from .arrays import frozen
-from .errors import CannotFollow, Diagnostic, UsageError, diagnostics, unknown
+from .arguments import by_name, checked, count, listed, number, together
+from .arrays import free, frozen
+from .errors import CannotFollow, Diagnostic, UsageError, diagnostics, index_of
 
 if TYPE_CHECKING:
     from .model import Model
@@ -44,7 +44,7 @@ class Body:
         self.position = numbers[:, 0:3]
         """`[time, 3]`, length."""
         self.quaternion = numbers[:, 3:7]
-        """`[time, 4]`, w x y z, unit, continuous in time."""
+        """`[time, 4]`, w x y z, unit; w >= 0 at the first output time, and continuous from there."""
         self.velocity = numbers[:, 7:10]
         self.angular_velocity = numbers[:, 10:13]
         self.acceleration = numbers[:, 13:16]
@@ -197,7 +197,7 @@ class Run:
         default, by all in `followed`."""
         chosen = list(self.followed) if variables is None else listed("variables", variables)
         by = [self._follow(variable) for variable in chosen]
-        order = self.model._order(order, [name] if name else [])
+        order = self.model._order(order, [] if name is None else [name])
         found = self._derivatives(order)
         # If all variables are admissible, nothing is copied.
         found = found if by == list(range(found.shape[1])) else frozen(found[:, by])
@@ -206,9 +206,7 @@ class Run:
     # Bodies
 
     def _body(self, name: str) -> int:
-        if name not in self.model.bodies:
-            raise unknown("body", name, self.model.bodies)
-        return 1 + self.model.bodies.index(name)
+        return 1 + index_of("body", name, self.model.bodies)
 
     def body(self, name: str) -> Body:
         """Motion of a body."""
@@ -230,18 +228,12 @@ class Run:
 
     def reaction(self, joint: str) -> Reaction:
         """Reaction of a joint, by its name (docs/loads.md). The model needs masses or forces."""
-        names = [one["name"] for one in self.model.joints]
-        if joint not in names:
-            raise unknown("joint", joint, names)
-        k = names.index(joint)
+        k = index_of("joint", joint, [one["name"] for one in self.model.joints])
         return Reaction(joint, self.model.joints[k]["bodies"][1], self._loads[0][:, k])
 
     def driver(self, name: str) -> DriverLoad:
         """Force or moment of a driver, by its name, with its speed and power. The model needs masses or forces."""
-        names = [one["name"] for one in self.model.drivers]
-        if name not in names:
-            raise unknown("driver", name, names)
-        k = names.index(name)
+        k = index_of("driver", name, [one["name"] for one in self.model.drivers])
         return DriverLoad(name, self.model.drivers[k]["force_unit"], self._loads[1][:, k])
 
     # Metrics and diagnostics
@@ -266,8 +258,7 @@ class Run:
 
     def metric(self, name: str) -> float:
         """Value of a metric."""
-        if name not in self.metrics:
-            raise unknown("metric", name, self.metrics)
+        index_of("metric", name, self.metrics)
         return self.metrics[name].value
 
     @cached_property
@@ -304,17 +295,18 @@ class Run:
         plotted. `others` are further runs by their labels. Returns the axes, an array of them for several quantities; `hardpoint.plot`
         plots any runs.
         """
-        runs = together({"this run": self}, by_name("others", others)) if others else self
+        runs = self if others is None else together({"this run": self}, by_name("others", others))
         return plots.plot(runs, names, over=over, order=order, by=by, ax=ax, **style)
 
     def animate(self, *, seconds: float = 4.0, frames: int = 60, size: float = 5.0) -> Any:
         """Animation of the mechanism's skeleton with matplotlib, `size` inches wide: a notebook plays it, `.save("motion.gif")` writes
         it. `run.page()` has the mechanism in colour, with the engine."""
-        if not seconds > 0 or not frames >= 1 or not size > 0:
+        long, wide, pictures = number("`seconds`", seconds), number("`size`", size), count("frames", frames)
+        if not long > 0 or not wide > 0 or pictures is None:
             raise UsageError.saying("`seconds`, `frames` and `size` are positive")
         if not len(self):
             raise UsageError.saying("no output time was solved: there is nothing to animate")
-        return plots.animation(self, seconds, int(frames), size)
+        return plots.animation(self, long, pictures, wide)
 
     def save(self, path: str | os.PathLike) -> None:
         """Writes the run with its model, atomically; `hardpoint.load_run(path)` reads it without solving anything."""
@@ -347,19 +339,25 @@ class Run:
         return pyarrow.Table.from_arrays(arrays, schema=pyarrow.schema(fields))
 
     def to_xarray(self):
-        """Values `[time]` and sensitivities `[variable, time]` of every measure and point, with their labels and units."""
+        """Values `[time]` and sensitivities `[variable, time]` of every measure and point, with their labels and units: `toe`, `d toe`.
+
+        A name that is taken ends in `_`: a measure named `time` is `time_`, since `time`, `variable` and `variable_unit` are
+        coordinates; and if there is a measure named `d toe`, the sensitivities of `toe` are `d toe_`. The attribute `of` has the name in
+        the model.
+        """
         import xarray
 
-        data = {}
-        for name, output in self.model.outputs.items():
-            for order, (column, unit) in enumerate(zip(output.columns, output.units)):
-                data[column] = ("time", self.values(name, order), {"units": unit})
-                if self._followed:
-                    slope = self.sensitivities(name, order=order)
-                    data[f"d {column}"] = (("variable", "time"), slope, {"units": f"{unit} per unit of the variable"})
         coordinates = {"time": ("time", self.times, {"units": "s"})}
         if self._followed:
             units = [self.model.variables[v].unit for v in self.followed]
             coordinates["variable"] = ("variable", list(self.followed))
             coordinates["variable_unit"] = ("variable", units)
+        data, slopes = {}, []
+        for name, output in self.model.outputs.items():
+            for order, (column, unit) in enumerate(zip(output.columns, output.units)):
+                data[free(column, coordinates, data)] = ("time", self.values(name, order), {"units": unit, "of": column})
+                slopes.append((name, order, column, unit))
+        for name, order, column, unit in slopes if self._followed else ():
+            attributes = {"units": f"{unit} per unit of the variable", "of": column}
+            data[free(f"d {column}", coordinates, data)] = (("variable", "time"), self.sensitivities(name, order=order), attributes)
         return xarray.Dataset(data, coordinates, {"model": self.model.name, "case": self.case or ""})

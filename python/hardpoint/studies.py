@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import display
-from .arguments import numbers
-from .errors import UsageError, unknown
+from .arguments import numbers, same_shape
+from .arrays import free
+from .errors import UsageError, index_of
 
 if TYPE_CHECKING:
     from .model import Model
@@ -87,8 +88,7 @@ class Study:
     def _record(self, name: str | None) -> str:
         if name is None:
             name = next((one for one in (*PREFERRED, *self.records) if one in self.records), "")
-        if name not in self.records:
-            raise unknown("table of this study", name, self.records)
+        index_of("table of this study", name, self.records)
         return name
 
     def __repr__(self) -> str:
@@ -102,7 +102,8 @@ class Map(dict):
     """A map over the positions of two drivers, as `maps.json` has it (docs/results.md)."""
 
     def to_xarray(self):
-        """Values and sensitivities of all measures by the positions of both drivers; NaN where a position was not reached."""
+        """Values and sensitivities of all measures by the positions of both drivers; NaN where a position was not reached. A measure
+        with the name of a driver ends in `_`."""
         import xarray
 
         first, second = self["drivers"]
@@ -110,10 +111,10 @@ class Map(dict):
         data = {}
         for measure in self["measures"]:
             values = np.array(measure["values"], dtype=float)
-            data[measure["name"]] = (axes, values, {"units": measure["unit"]})
+            data[free(measure["name"], axes, data)] = (axes, values, {"units": measure["unit"]})
             for one in measure["sensitivities"]:
                 attributes = {"units": one["unit"]}
-                data[f"d {measure['name']} / d {one['variable']}"] = (axes, np.array(one["values"], dtype=float), attributes)
+                data[free(f"d {measure['name']} / d {one['variable']}", axes, data)] = (axes, np.array(one["values"], dtype=float), attributes)
         coordinates = {d["name"]: (d["name"], np.array(d["values"], dtype=float), {"units": d["unit"]}) for d in (first, second)}
         return xarray.Dataset(data, coordinates, {"map": self["name"]})
 
@@ -147,11 +148,10 @@ class DriverTable(dict):
         terms = self._of(output)["numbers"]
         axes = self.drivers
         for name in at:
-            if name not in axes:
-                raise unknown("driver of this table", name, tuple(axes))
+            index_of("driver of this table", name, axes)
         if missing := [name for name in axes if name not in at]:
             raise UsageError.saying(f"the table is over {', '.join(f'`{name}`' for name in axes)}: give `{missing[0]}` too")
-        places = np.broadcast_arrays(*(numbers(f"driver `{name}`", at[name]) for name in axes))
+        places = list(same_shape("drivers", {name: numbers(f"driver `{name}`", at[name]) for name in axes}).values())
         cells, weights = [], []
         for (name, knots), x in zip(axes.items(), places):
             if not np.all((knots[0] <= x) & (x <= knots[-1])):
@@ -170,7 +170,7 @@ class DriverTable(dict):
         return total
 
     def to_xarray(self):
-        """Values and derivatives at the knots."""
+        """Values and derivatives at the knots. An output with the name of a driver ends in `_`."""
         import xarray
 
         axes = tuple(self.drivers)
@@ -179,14 +179,12 @@ class DriverTable(dict):
         for one in self["outputs"]:
             for term in one["numbers"]:
                 name = " by ".join([one["name"], *term["by"]])
-                data[name] = (axes, np.reshape(term["values"], shape), {"units": term["unit"]})
+                data[free(name, axes, data)] = (axes, np.reshape(term["values"], shape), {"units": term["unit"]})
         coordinates = {axis["name"]: (axis["name"], np.array(axis["knots"], dtype=float), {"units": axis["unit"]}) for axis in self["drivers"]}
         return xarray.Dataset(data, coordinates, {"model": self["model"], "interpolation": self["interpolation"]})
 
     def _of(self, output: str) -> dict[str, Any]:
-        if output not in self.outputs:
-            raise unknown("output of this table", output, self.outputs)
-        return next(one for one in self["outputs"] if one["name"] == output)
+        return self["outputs"][index_of("output of this table", output, self.outputs)]
 
     def __repr__(self) -> str:
         return f"<hardpoint.DriverTable of {', '.join(self.outputs)} over {', '.join(self.drivers)}: {self['cells']} cells, {self['interpolation']}>"

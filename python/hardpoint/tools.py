@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _native, files
-from .arguments import by_name, count, listed, named, number, numbers
+from .arguments import by_name, count, instance, listed, named, number, numbers
 from .errors import Diagnostic, HardpointError, ModelError, MotionStopped, StudyError, TopologyError, UsageError
 from .studies import DriverTable, Study
 
@@ -171,6 +171,10 @@ def _permitted(error: Any) -> str:
 @named
 def compare(model: Model, other: Model, case: str | None = None, measures: Iterable[str] = ()) -> Study:
     """Compares the motions of two models: hardpoints, measures, metrics, as `hardpoint compare` does."""
+    from .model import Model
+
+    instance("model", model, Model, "hardpoint.Model")
+    instance("other", other, Model, "hardpoint.Model")
     chosen = [f"--measure={name}" for name in listed("measures", measures)]
     with saved(model) as first, saved(other) as second:
         return _study(model, facts("compare", first, second, *_case(model, case), *chosen))
@@ -189,7 +193,7 @@ def synthesize(task: str | os.PathLike | Mapping[str, Any], *, answers: int | No
             path = Path(place, "task.toml")
             path.write_text(_native.to_toml(written(task)), encoding="utf-8")
         else:
-            path = Path(task)
+            path = Path(files.where(task))
         found = facts("synthesize", path, *options)
     return Study(None, found, [], None, None)
 
@@ -244,8 +248,10 @@ def new(
             table = Path(folder, "hardpoints.csv")
             with open(table, "w", newline="", encoding="utf-8") as out:
                 rows = csv.writer(out, lineterminator="\n")
-                rows.writerow(["name", "x", "y", "z"])
-                rows.writerows([name, *_place(name, place)] for name, place in hardpoints.items())
+                places = {name: _place(name, place) for name, place in hardpoints.items()}
+                # Points of a planar mechanism have two coordinates.
+                rows.writerow(["name", "x", "y", "z"][: 1 + max((len(place) for place in places.values()), default=3)])
+                rows.writerows([name, *place] for name, place in places.items())
             options += ["--hardpoints", os.fspath(table)]
         elif hardpoints is not None:
             options += ["--hardpoints", os.path.abspath(files.where(hardpoints))]
@@ -260,7 +266,7 @@ def new(
 def _place(name: str, place: Any) -> list[float]:
     found = numbers(f"hardpoint `{name}`", place)
     if found.shape not in ((2,), (3,)):
-        raise UsageError.saying(f"hardpoint `{name}` has coordinates x, y and z, not {place!r}")
+        raise UsageError.saying(f"hardpoint `{name}` has coordinates x, y and z (x and y in a plane), not {place!r}")
     return found.tolist()
 
 

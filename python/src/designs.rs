@@ -173,7 +173,8 @@ impl Model {
         Ok(answer)
     }
 
-    /// Second derivatives of the values of some outputs by some variables: `[time, output, variable, variable]`.
+    /// Second derivatives of the values of some outputs by some variables: `[time, output, variable, variable]`,
+    /// NaN for inadmissible variables.
     fn second<'py>(
         &self,
         py: Python<'py>,
@@ -190,11 +191,17 @@ impl Model {
         let directions: Vec<Vec<f64>> = variables.iter().map(direction).collect();
         let n = variables.len();
         let pairs: Vec<[usize; 2]> = (0..n).flat_map(|i| (0..=i).map(move |j| [i, j])).collect();
-        let found = patiently(py, None, |watch| watch.over(analysis).second(&changes, &directions, &pairs))?;
+        // Second derivatives come without the admissibility of the variables, first ones with it.
+        let (known, found) = patiently(py, None, |watch| {
+            let analysis = &watch.over(analysis);
+            let first = analysis.gradients(&changes, &outputs, GradientMethod::Auto);
+            (first.admissibility, analysis.second(&changes, &directions, &pairs))
+        })?;
         if let Some(stop) = &found.stop {
             let diagnostic = diagnose::stop(file, stop, found.times.len(), None);
             return Err(Failure::of_model(Kind::Stopped, file, &diagnostic).into());
         }
+        let follows = |b: usize| !matches!(known[variables[b]], Admissibility::CannotFollow { .. });
         let (steps, count) = (found.times.len(), outputs.len());
         let mut all = vec![0.0; steps * count * n * n];
         let per = |b: usize| file.units.per_si(model.variables[variables[b]].quantity);
@@ -202,7 +209,8 @@ impl Model {
             for (place, m) in outputs.iter().enumerate() {
                 let of = file.units.per_si(found.outputs[*m].dimension);
                 for (p, [i, j]) in pairs.iter().enumerate() {
-                    let value = found.value(k, p, *m) * (of / per(*i) / per(*j));
+                    let factor = if follows(*i) && follows(*j) { of / per(*i) / per(*j) } else { f64::NAN };
+                    let value = found.value(k, p, *m) * factor;
                     let first = (k * count + place) * n * n;
                     all[first + i * n + j] = value;
                     all[first + j * n + i] = value;

@@ -17,7 +17,7 @@ use hardpoint_report::diagnose;
 use hardpoint_report::figures::variable_unit;
 use hardpoint_report::figures::{order_unit, symbol, unit};
 use hardpoint_study::request::named;
-use hardpoint_study::whatif::{add_coordinates, add_tilts};
+use hardpoint_study::whatif::{add_coordinates, add_tilts, variable_named};
 use hardpoint_study::{Motions, position_model};
 use pyo3::prelude::*;
 use serde_json::{Value, json};
@@ -227,6 +227,13 @@ impl Model {
         Self::new(whole)
     }
 
+    /// Index of a design variable, by its name or as the coordinate `A.x` that it is; `None` if there is none.
+    fn variable(&self, name: &str) -> Option<usize> {
+        // An unknown coordinate would be added.
+        let mut model = self.whole.model.clone();
+        variable_named(&mut model, name).map(|v| v.0).filter(|v| *v < self.whole.model.variables.len())
+    }
+
     /// Contents of the model, as JSON.
     fn info(&self) -> String {
         let (file, model, units) = (&self.whole, &self.whole.model, self.whole.units);
@@ -308,9 +315,15 @@ impl Model {
         Ok(())
     }
 
-    /// Text of the file with a design written into it.
-    fn edited(&self, design: Vec<f64>) -> PyResult<String> {
+    /// Text of the file with a design written into it; for the folder `to`, data files are named from there.
+    #[pyo3(signature = (design, from_folder=None, to=None))]
+    fn edited(&self, design: Vec<f64>, from_folder: Option<&str>, to: Option<&str>) -> PyResult<String> {
         let values = self.changes(&design)?;
-        Ok(self.whole.edit(&values).map_err(|found| Failure::of_text(&found))?)
+        let from = from_folder.map(Path::new);
+        let text = self.whole.edit(&values).and_then(|text| match to {
+            Some(to) => self.whole.text_for(&text, from, Path::new(to)),
+            None => Ok(text),
+        });
+        Ok(text.map_err(|found| Failure::of_text(&found))?)
     }
 }

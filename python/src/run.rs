@@ -194,6 +194,13 @@ impl Run {
             push(Angle, s.alpha);
             all.push(s.quaternion());
         }
+        // Both signs are the same orientation: that nearer to the one before.
+        for k in 1..all.len() {
+            let [before, now]: [[f64; 4]; 2] = [all[k - 1], all[k]];
+            if before.iter().zip(now).map(|(a, b)| a * b).sum::<f64>() < 0.0 {
+                all[k] = now.map(|x| -x);
+            }
+        }
         let rows = numbers.chunks_exact(15).zip(all);
         let whole: Vec<f64> = rows.flat_map(|(n, q)| [&n[..3], &q[..], &n[3..]].concat()).collect();
         array(py, whole, [steps, 19])

@@ -3,11 +3,13 @@
 use std::num::NonZero;
 use std::ops::ControlFlow;
 use std::path::Path;
+use std::sync::Arc;
 
 use hardpoint::Analysis;
-use hardpoint::model::VariableId;
+use hardpoint::model::{CaseId, VariableId};
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::topology::Formulation;
+use hardpoint_file::ModelFile;
 use hardpoint_report::calibrate::{CalibrateFacts, CalibrationInputs};
 use hardpoint_report::diagnose;
 use hardpoint_report::maps::MapFact;
@@ -27,7 +29,7 @@ use hardpoint_study::tolerance::{self, tolerance, toleranced_designs};
 use hardpoint_study::trade_off::{self, trade_off};
 use hardpoint_study::verify::{self, verify};
 use hardpoint_study::whatif::what_if;
-use hardpoint_study::{Control, Progress, RequestError, validity};
+use hardpoint_study::{Control, Motions, Progress, RequestError, validity};
 use pyo3::prelude::*;
 use serde::Serialize;
 use serde_json::json;
@@ -64,22 +66,44 @@ impl Model {
     fn values_of(&self, changes: &[f64]) -> Vec<f64> {
         changes.iter().enumerate().map(|(k, b)| self.whole.value_of(VariableId(k), *b)).collect()
     }
+
+    /// Numbers and motions of a study over one case, or over all.
+    pub fn motions_of(&self, case: Option<usize>) -> Result<(Vec<usize>, Motions<'static>), Failure> {
+        let analyses = self.motions()?.analyses();
+        let numbers = case.map_or_else(|| (0..analyses.len()).collect(), |k| vec![k]);
+        let chosen: Vec<_> = numbers.iter().map(|k| analyses[*k].clone()).collect();
+        Ok((numbers, chosen.into()))
+    }
+
+    /// File and motions of a search over one case, with its goals and limits, or over all.
+    fn searched(&self, case: Option<usize>) -> Result<(ModelFile, Motions<'static>), Failure> {
+        let mut file = self.whole.clone();
+        let Some(case) = case else { return Ok((file, self.motions_of(None)?.1)) };
+        file.model = file.model.with_case_only(CaseId(case));
+        let motions = Motions::of(file.model.motions().into_iter().map(Arc::new), Formulation::Relative);
+        let motions = motions.map_err(|(_, fault)| {
+            Failure::of_model(Kind::Topology, &file, &diagnose::topology_fault(&file, &fault))
+        })?;
+        Ok((file, motions))
+    }
 }
 
 #[pymethods]
 impl Model {
     /// Optimises the design.
-    #[pyo3(signature = (first=0, starts=None, iterations=None, workers=None, progress=None))]
+    #[pyo3(signature = (case=None, first=0, starts=None, iterations=None, workers=None, progress=None))]
+    #[expect(clippy::too_many_arguments, reason = "a call of Python")]
     fn optimize(
         &self,
         py: Python<'_>,
+        case: Option<usize>,
         first: usize,
         starts: Option<usize>,
         iterations: Option<usize>,
         workers: Option<usize>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Searched> {
-        let (file, motions) = (&self.whole, self.motions()?);
+        let (file, motions) = &self.searched(case)?;
         let overrides = optimize::Overrides {
             starts,
             iterations,
@@ -102,12 +126,15 @@ impl Model {
     }
 
     /// Trades goals against each other; the design is that of a point, by default of the balanced compromise.
-    #[pyo3(signature = (goals, points=None, point=None, starts=None, iterations=None, workers=None, progress=None))]
+    #[pyo3(signature = (
+        goals, case=None, points=None, point=None, starts=None, iterations=None, workers=None, progress=None
+    ))]
     #[expect(clippy::too_many_arguments, reason = "a call of Python")]
     fn trade_off(
         &self,
         py: Python<'_>,
         goals: Vec<String>,
+        case: Option<usize>,
         points: Option<usize>,
         point: Option<usize>,
         starts: Option<usize>,
@@ -115,7 +142,7 @@ impl Model {
         workers: Option<usize>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Searched> {
-        let (file, motions) = (&self.whole, self.motions()?);
+        let (file, motions) = &self.searched(case)?;
         let overrides = trade_off::Overrides { goals, points, starts, iterations };
         let request = trade_off::Request::of(&file.model, overrides).map_err(Failure::from)?;
         let found = controlled(py, progress, threads(workers), |control| {
@@ -130,46 +157,48 @@ impl Model {
     }
 
     /// Runs the tolerance study.
-    #[pyo3(signature = (samples=None, seed=None, allocate=None, workers=None, progress=None))]
+    #[pyo3(signature = (case=None, samples=None, seed=None, allocate=None, workers=None, progress=None))]
+    #[expect(clippy::too_many_arguments, reason = "a call of Python")]
     fn tolerance(
         &self,
         py: Python<'_>,
+        case: Option<usize>,
         samples: Option<usize>,
         seed: Option<u64>,
         allocate: Option<String>,
         workers: Option<usize>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<String> {
-        let (file, motions) = (&self.whole, self.motions()?);
+        let (file, (numbers, motions)) = (&self.whole, &self.motions_of(case)?);
         let rule = allocate.as_deref().map(tolerance::allocation_rule);
         let allocate = rule.transpose().map_err(Failure::from)?;
         let overrides = tolerance::Overrides { samples, seed, allocate };
         let request = tolerance::Request::of(&file.model, &overrides).map_err(Failure::from)?;
-        let numbers: Vec<usize> = (0..motions.len()).collect();
         let found = controlled(py, progress, threads(workers), |control| {
-            tolerance(&file.model, motions, &numbers, &request, control)
+            tolerance(&file.model, motions, numbers, &request, control)
         })?;
         let found = found.map_err(|error| match error {
             tolerance::Error::Nominal(stopped) => {
-                let (of_motion, diagnostic) = nominal_stop(file, motions, &numbers, &stopped);
+                let (of_motion, diagnostic) = nominal_stop(file, motions, numbers, &stopped);
                 Failure::of_model(Kind::Stopped, &of_motion, &diagnostic)
             }
             tolerance::Error::Request(error) => error.into(),
         })?;
         let asked = &request.settings;
-        let facts = ToleranceFacts::of(&ToleranceInputs { file, numbers: &numbers, asked, found: &found });
+        let facts = ToleranceFacts::of(&ToleranceInputs { file, numbers, asked, found: &found });
         Ok(outcome(&facts, &facts.tables()))
     }
 
     /// Monte Carlo designs of the tolerance study by number: `[design, variable]`.
-    #[pyo3(signature = (numbers, seed=None))]
+    #[pyo3(signature = (numbers, case=None, seed=None))]
     fn drawn_designs<'py>(
         &self,
         py: Python<'py>,
         numbers: Vec<usize>,
+        case: Option<usize>,
         seed: Option<u64>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let (file, motions) = (&self.whole, self.motions()?);
+        let (file, (_, motions)) = (&self.whole, &self.motions_of(case)?);
         let overrides = tolerance::Overrides { seed, ..Default::default() };
         let request = tolerance::Request::of(&file.model, &overrides).map_err(Failure::from)?;
         let left_out = py.detach(|| {

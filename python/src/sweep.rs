@@ -31,7 +31,7 @@ struct Asked {
     ranges: BTreeMap<String, [f64; 2]>,
     curves: Vec<String>,
     designs: Option<String>,
-    cases: Vec<usize>,
+    case: Option<usize>,
 }
 
 /// A sweep that can be solved in parts. A part is the same on every worker, to the last bit.
@@ -70,12 +70,7 @@ impl Model {
     fn sweep(this: Bound<'_, Self>, asked: &str) -> PyResult<Sweep> {
         let asked: Asked = serde_json::from_str(asked).map_err(|e| Failure::Misunderstood(e.to_string()))?;
         let model = this.get();
-        let motions = model.motions()?;
-        let numbers: Vec<usize> =
-            if asked.cases.is_empty() { (0..motions.len()).collect() } else { asked.cases.clone() };
-        let motions = hardpoint_study::Motions::from(
-            numbers.iter().map(|k| motions.analyses()[*k].clone()).collect::<Vec<_>>(),
-        );
+        let (numbers, motions) = model.motions_of(asked.case)?;
         let asked = model.sweeping(asked)?;
         let sweep = Sweep { model: this.unbind(), asked, motions, numbers };
         sweep.with(|_| ())?;

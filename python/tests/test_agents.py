@@ -149,6 +149,12 @@ def test_what_if_agrees_with_the_command(serve, command):
     assert "tie_rod_outer" in failed(serve, "what_if", path="models/macpherson.toml", changes={"tie_rod_outr.z": 2})
 
 
+@pytest.mark.parametrize("tool", ["run", "what_if"])
+def test_an_unknown_measure_is_an_error(serve, tool):
+    text = failed(serve, tool, text=PENDULUM, measures=["height", "hight"])
+    assert "HP0602" in text and "`hight`" in text and "did you mean `height`?" in text
+
+
 def test_optimize_saves_the_optimised_model(serve, tmp_path):
     # The targets are in a file next to the model.
     for name in ["four_bar_inverse.toml", "four_bar_inverse.csv"]:

@@ -449,9 +449,25 @@ def test_invalid_requests_are_rejected_before_anything_is_written(model, client,
         ({"ranges": {"tie_rod": (0, 1)}}, "there is no design variable named `tie_rod`"),
         ({"curves": ["to"]}, "did you mean `toe`"),
         ({"sample": 3}, "sample"),
+        ({"part": "a"}, "`part` is a whole number"),
+        ({"ranges": {"lca_front_z": (-1, float("inf"))}}, "finite numbers"),
+        ({"patience": "long"}, "`patience`: 'long' is not a number"),
+        ({"progress": 1}, "`progress` is `True`, or a function"),
     ]:
         with pytest.raises(hardpoint.UsageError, match=why):
             hardpoint.dask.sweep(model, client, store, **asked)
+    for ask, why in [
+        (lambda: hardpoint.dask.sweep(3, client, store), "`model` is a `hardpoint.Model`, not 3"),
+        (lambda: hardpoint.dask.sweep(model, 3, store), "`client` is a `distributed.Client`, not 3"),
+        (lambda: hardpoint.dask.sweep(model, client, 3), "a path is a text"),
+        (lambda: hardpoint.dask.sweep(model, client, "nowhere://there"), "is not a valid store"),
+        (lambda: hardpoint.dask.monte_carlo(model, client, store, 8, seed=1.5), "`seed` is a whole number"),
+        (lambda: hardpoint.dask.monte_carlo(model, client, store, 8, sead=1), "did you mean `seed`"),
+        (lambda: hardpoint.dask.multi_start(model, client, 2, iterations="3"), "`iterations` is a whole number"),
+        (lambda: hardpoint.dask.opened(3), "a path is a text"),
+    ]:
+        with pytest.raises(hardpoint.UsageError, match=why):
+            ask()
     with pytest.raises(hardpoint.UsageError, match="at least one sample"):
         hardpoint.dask.monte_carlo(model, client, store, 0)
     with pytest.raises(hardpoint.UsageError, match="at least one start"):
@@ -570,7 +586,7 @@ def test_searches_from_many_starts(here):
 
 
 def optimized(model, starts):
-    return model._native.optimize(0, starts, None, 1, None)
+    return model._native.optimize(None, 0, starts, None, 1, None)
 
 
 def test_the_best_search():

@@ -66,7 +66,25 @@ def test_designs_that_lock_raise_or_are_listed(strut):
         (lambda m: m.gradients("toe", method="both"), "unknown method"),
         (lambda m: m.run(sensitivities=False).sensitivity("toe", "ball_joint_z"), "solved without sensitivities"),
         (lambda m: m.sweep(ranges={"ball_joint_q": (0, 1)}), "did you mean"),
-        (lambda m: m.sweep(colour="red"), "unknown field"),
+        (lambda m: m.sweep(smaples=3), "`sweep` has no argument `smaples`; did you mean `samples`"),
+        (lambda m: m.sweep(samples="8"), "`samples` is a whole number"),
+        (lambda m: m.sweep(method=3), "`method` is a text"),
+        (lambda m: m.sweep(ranges={"ball_joint_z": (-1, float("inf"))}), "both of its ends, finite numbers"),
+        (lambda m: hardpoint.Function(3), "`model` is a `hardpoint.Model`, not 3"),
+        (lambda m: m.compare(3), "`other` is a `hardpoint.Model`, not 3"),
+        (lambda m: hardpoint.Model.from_dict([]), "the contents of a model file are a dictionary"),
+        (lambda m: hardpoint.synthesize(3), "a path is a text"),
+        (lambda m: m.run().values(["toe"]), "the name of a measure or point is a text"),
+        (lambda m: m.run().values("toe", [1]), "unknown order"),
+        (lambda m: m.run().metric(["toe"]), "the name of a metric is a text"),
+        (lambda m: m.run().sensitivity("toe", ["ball_joint_z"]), "the name of a design variable is a text"),
+        (lambda m: m.run().animate(frames="3"), "`frames` is a whole number"),
+        (lambda m: m.run().animate(seconds="3"), "`seconds`: '3' is not a number"),
+        (lambda m: m.at(progress=1), "`progress` is `True`, or a function"),
+        (lambda m: m.at(strut_drive=[1, 2], rack_drive=[1, 2, 3]), r"different shapes: `rack_drive` \(3,\), `strut_drive` \(2,\)"),
+        (lambda m: m.run({"ball_joint_z": 1.0, "ball_joint.z": 1.0}), "are the same design variable; give it once"),
+        (lambda m: m.run(np.ma.masked_array([1.0] * 14, [True] + [False] * 13)), "some values are masked"),
+        (lambda m: m.designs(np.ma.masked_less(np.zeros((2, 14)), 1)), "some values are masked"),
         (lambda m: hardpoint.Function(m, ["ball_joint_z"], ["nothing"]), "no metric or measure"),
         (lambda m: hardpoint.build(name="x", units={1, 2}), "consists of numbers"),
         (lambda m: m.run(times="abc"), "output times: 'abc' is not a number"),
@@ -219,3 +237,9 @@ def test_warnings_of_the_reader_are_warnings():
     text = text.split("[drivers")[0] + '[drivers.motor]\njoint = "J1"\nlaw = "30 * sin(360 * t)"\n\n[time]\nend = 1\nsteps = 10\n'
     with pytest.warns(hardpoint.HardpointWarning, match="functions take radians"):
         hardpoint.parse(text)
+
+
+def test_positions_in_a_table_have_one_shape():
+    table = hardpoint.read(MODELS / "double_wishbone.toml").table({"spring_drive": (-1, 1), "rack_drive": (-1, 1)}, "toe", error="0.1deg")
+    with pytest.raises(hardpoint.UsageError, match=r"different shapes: `spring_drive` \(2,\), `rack_drive` \(3,\)"):
+        table("toe", spring_drive=[0, 1], rack_drive=[0, 0.5, 1])

@@ -104,6 +104,74 @@ def test_second_derivatives_are_differences_of_first(strut):
         assert second[:, :, k].T == pytest.approx((there - back) / (2 * by), abs=1e-8)
 
 
+def test_second_derivatives_by_an_inadmissible_variable_are_undefined():
+    model = hardpoint.read(MODELS / "slider_crank.toml")
+    names = list(model.variables)
+    second, first = model.second_derivatives("stroke"), model.gradients("stroke")
+    follows = np.isin(names, model.run().followed)
+    assert not follows[names.index("J4_ry")] and follows.any()
+    assert (np.isnan(first[:, 0]) == ~follows).all()
+    assert (np.isnan(second[:, 0]) == ~(follows[:, None] & follows)).all()
+    assert np.isnan(model.second_derivatives("stroke", "J4_ry")).all()
+
+
+def test_quaternions_are_continuous_over_turns():
+    run = hardpoint.read(MODELS / "four_bar.toml").run()
+    for name in run.model.bodies:
+        body = run.body(name)
+        w, q = body.quaternion[:, :1], body.quaternion[:, 1:]
+        assert w[0] >= 0 and (np.sum(body.quaternion[1:] * body.quaternion[:-1], axis=1) > 0).all()
+        # Euler parameters have the rate omega q / 2; a difference over a step is second-order accurate at its middle.
+        omega = np.deg2rad(body.angular_velocity)
+        rate = 0.5 * np.hstack([-np.sum(omega * q, axis=1, keepdims=True), w * omega + np.cross(omega, q)])
+        step = np.diff(run.times)[:, None]
+        middle = (rate[1:] + rate[:-1]) / 2
+        assert np.diff(body.quaternion, axis=0) / step == pytest.approx(middle, abs=1e-3 * max(abs(rate).max(), 1e-3))
+    assert abs(run.body("crank").quaternion).min(axis=0)[0] < 0.05, "the crank turns by more than half a turn"
+
+
+def test_labelled_designs_go_by_their_names(strut):
+    pandas, xarray = pytest.importorskip("pandas"), pytest.importorskip("xarray")
+    one = {"tie_rod_outer_z": 2.0, "ball_joint_y": -1.0}
+    expected = strut.run(one).values("toe")
+    series = pandas.Series({name: one.get(name, 0.0) for name in reversed(list(strut.variables))})
+    assert (strut.run(series).values("toe") == expected).all()
+    assert (strut.run(pandas.Series(one)).values("toe") == expected).all()
+    array = xarray.DataArray(series.to_numpy(), {"variable": list(series.index)}, ["variable"])
+    assert (strut.run(array).values("toe") == expected).all()
+    # Numbers from 0 are no names.
+    plain = pandas.Series([one.get(name, 0.0) for name in strut.variables])
+    assert (strut.run(plain).values("toe") == expected).all()
+    with pytest.raises(hardpoint.UsageError, match="did you mean `ball_joint_y`"):
+        strut.run(pandas.Series({"ball_joint_yy": 1.0}))
+
+    rows = [one, {"tie_rod_outer_z": 0.5, "ball_joint_y": 1.0}]
+    expected = strut.designs(rows, "toe").values
+    frame = pandas.DataFrame(rows).assign(note=["first", "second"])
+    names = ["ball_joint_y", "tie_rod_outer_z"]
+    assert (strut.designs(frame[names], "toe").values == expected).all()
+    assert (strut.designs(frame, "toe", variables=names).values == expected).all()
+    assert (strut.designs([frame.iloc[k][names].astype(float) for k in range(2)], "toe").values == expected).all()
+    assert (strut.designs(strut.designs(rows).to_xarray()["designs"][:, ::-1], "toe").values == expected).all()
+    assert (strut.designs(frame[names].to_numpy(), "toe", variables=names).values == expected).all()
+    with pytest.raises(hardpoint.UsageError, match="no design variable named `note`"):
+        strut.designs(frame, "toe")
+    with pytest.raises(hardpoint.UsageError, match="`ball_joint_z` is missing"):
+        strut.designs(frame, "toe", variables=["ball_joint_z"])
+
+    f = hardpoint.Function(strut, ["tie_rod_outer_z", "ball_joint_y"], "toe")
+    assert (f(pandas.Series(one)[names]) == f([2.0, -1.0])).all()
+    assert (f.many(frame) == f.many([[2.0, -1.0], [0.5, 1.0]])).all()
+
+
+def test_a_coordinate_is_another_name_of_its_variable(strut):
+    assert (strut.run({"tie_rod_outer.z": 2.0}).values("toe") == strut.run({"tie_rod_outer_z": 2.0}).values("toe")).all()
+    run = strut.run()
+    assert (run.sensitivity("toe", "tie_rod_outer.z") == run.sensitivity("toe", "tie_rod_outer_z")).all()
+    with pytest.raises(hardpoint.UsageError, match="no design variable named `tie_rod_outer.x`"):
+        strut.run({"tie_rod_outer.x": 2.0})
+
+
 def test_gradients_either_way_are_those_of_the_run(strut):
     run = strut.run()
     for method in ("direct", "adjoint", "auto"):
@@ -164,6 +232,35 @@ def test_tables_have_labels_and_units(strut):
     slope = labelled["d toe"].sel(variable="tie_rod_outer_z")
     assert (slope.values == run.sensitivity("toe", "tie_rod_outer_z")).all()
     assert labelled["toe"].attrs["units"] == "deg"
+
+
+TAKEN = """
+name = "taken"
+units = { length = "mm", angle = "deg" }
+planar = "xy"
+hardpoints = { A = [0, 0], B = [40, 200], C = [360, 600], D = [400, 0] }
+bodies = { ground = ["A", "D"], crank = ["A", "B"], coupler = ["B", "C"], rocker = ["C", "D"] }
+drivers.motor = { joint = "A", law = "10*t" }
+design.C_x = { move = "C", along = "x" }
+measures.r = { type = "coordinate", joint = "D" }
+measures."d r" = { type = "coordinate", joint = "B" }
+measures.time = { type = "coordinate", joint = "C" }
+measures.variable = { type = "coordinate", joint = "A" }
+time = { end = 1, steps = 4 }
+"""
+
+
+def test_names_in_a_data_set_are_unique():
+    pytest.importorskip("xarray")
+    run = hardpoint.parse(TAKEN).run()
+    data = run.to_xarray()
+    assert (data["d r"].values == run.values("d r")).all() and data["d r"].dims == ("time",)
+    assert (data["d r_"].sel(variable="C_x").values == run.sensitivity("r", "C_x")).all() and data["d r_"].attrs["of"] == "r"
+    assert (data["d d r"].sel(variable="C_x").values == run.sensitivity("d r", "C_x")).all()
+    for name in ("time", "variable"):
+        assert (data[f"{name}_"].values == run.values(name)).all() and data[f"{name}_"].attrs["of"] == name
+        assert (data[f"d {name}"].sel(variable="C_x").values == run.sensitivity(name, "C_x")).all()
+    assert list(data.coords) == ["time", "variable", "variable_unit"]
 
 
 def test_a_model_built_in_code_is_that_of_the_file():

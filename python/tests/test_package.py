@@ -2,6 +2,7 @@
 
 import json
 import math
+import pickle
 import subprocess
 import sys
 
@@ -318,3 +319,46 @@ def test_everything_has_a_repr_that_says_what_it_is(toe, press):
     for thing in (toe, run, run.driver("motor"), run.reaction("A"), run.body(press.bodies[0]), toe.at(), hardpoint.Function(toe), toe.designs([[0.0] * 5], case="bump"), toe.optimize()):
         text = repr(thing)
         assert text.startswith("<hardpoint.") and " at 0x" not in text, text
+
+
+TABULATED = """
+name = "tabulated"
+units = { length = "mm", angle = "deg" }
+planar = "xy"
+hardpoints = { A = [0, 0], B = [40, 200], C = [360, 600], D = [400, 0] }
+bodies = { ground = ["A", "D"], crank = ["A", "B"], coupler = ["B", "C"], rocker = ["C", "D"] }
+drivers.motor = { joint = "A", law = { type = "table", file = "law.csv" } } # measured
+measures.r = { type = "coordinate", joint = "D" }
+time = { end = 1, steps = 4 }
+"""
+
+
+def test_a_model_saved_in_another_folder_reads_the_same_files(tmp_path):
+    own, other = tmp_path / "models", tmp_path / "other"
+    own.mkdir()
+    other.mkdir()
+    (own / "m.toml").write_text(TABULATED)
+    (own / "law.csv").write_text("0,0\n0.5,20\n1,30\n")
+    model = hardpoint.read(own / "m.toml").with_(time={"end": 1.0, "steps": 10})
+    expected = model.run().values(model.measures[0])
+    model.save(tmp_path / "above.toml")
+    assert (tmp_path / "above.toml").read_text() == model.text.replace('"law.csv"', '"models/law.csv"')
+    assert (hardpoint.read(tmp_path / "above.toml").run().values(model.measures[0]) == expected).all()
+    model.save(own / "again.toml")
+    assert (own / "again.toml").read_text() == model.text
+    for make, why in ((lambda: None, "which is not there"), (lambda: (other / "law.csv").write_text("0,0\n1,300\n"), "other contents")):
+        make()
+        with pytest.raises(hardpoint.ModelError, match=why) as raised:
+            model.save(other / "m.toml")
+        assert raised.value.code == "HP0505" and not (other / "m.toml").exists()
+    (other / "law.csv").write_bytes((own / "law.csv").read_bytes())
+    for of in (model, pickle.loads(pickle.dumps(model))):
+        of.save(other / "m.toml")
+        assert (hardpoint.read(other / "m.toml").run().values(model.measures[0]) == expected).all()
+
+
+def test_a_planar_template_has_points_with_two_coordinates(tmp_path):
+    places = {"A": [0, 0], "B": [1.5, 2], "C": [9, 0.5], "rail": [14, 0.5]}
+    model = hardpoint.new(tmp_path / "p", "slider-crank", hardpoints=places, units="in")
+    for name, place in places.items():
+        assert model.hardpoints[name][:2] == pytest.approx([25.4 * x for x in place], rel=1e-12), name

@@ -122,6 +122,28 @@ def test_what_if_and_verify(strut, command):
     assert strut.verify().facts["passed"] is True
 
 
+def test_a_what_if_has_the_names_of_the_command(strut, command):
+    for name in ("tie_rod_outer.z", "tie_rod_outer.x", "lca_pivot.tilt_y"):
+        facts = printed(command("whatif", MODELS / "macpherson.toml", "--set", f"{name}=0.5", "--measure", "toe", "--json"))
+        study = strut.what_if({name: 0.5})
+        assert study.facts["change"] == facts["change"], name
+        ours, theirs = ([m["exact"] for m in of["measures"] if m["measure"] == "toe"] for of in (study.facts, facts))
+        assert ours == theirs, name
+
+
+def test_studies_of_a_case_are_over_that_case(command):
+    path = MODELS / "studies/strut_toe.toml"
+    bump = hardpoint.read(path).case("bump")
+    same(bump.optimize(), printed(command("optimize", path, "--case", "bump", "--json")))
+    path = MODELS / "studies/strut_tolerances.toml"
+    bump = hardpoint.read(path).case("bump")
+    same(bump.tolerance(samples=500), printed(command("tolerance", path, "--case", "bump", "--samples", 500, "--json")))
+    path = MODELS / "studies/strut_sweep.toml"
+    model = hardpoint.read(path)
+    case = model.cases[-1]
+    same(model.case(case).sweep(samples=100), printed(command("sweep", path, "--case", case, "--samples", 100, "--json")))
+
+
 def test_maps(command, tmp_path):
     path = MODELS / "studies/strut_map.toml"
     model = hardpoint.read(path)

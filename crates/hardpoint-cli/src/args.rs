@@ -33,8 +33,9 @@ Exit codes:
     0  done; for verify: every variable passed
     1  verify: a sensitivity and its re-solved designs disagree;
        clearance: shapes are nearer than required;
+       envelope: the permitted error is not reached;
        map: no error is proved, or the table would be too large;
-       optimize: the search did not converge, or limits are violated;
+       optimize, trade-off, calibrate: the search did not converge, or limits are violated;
        synthesize: no linkage fulfils the task
     2  invalid command line
     3  the model file cannot be read, or has errors
@@ -682,7 +683,7 @@ With --output it writes into the folder:
 Examples:
   hardpoint optimize models/four_bar_inverse.toml
   hardpoint optimize models/four_bar_inverse.toml --starts 100 --json | jq '.starts[].status'
-  hardpoint optimize models/four_bar_inverse.toml --starts 20 --optimum 2 --save second.toml
+  hardpoint optimize models/synthesis/arc_five_points.toml --starts 20 --optimum 2 --save second.toml
   hardpoint optimize models/synthesis/arc_five_points.toml --other-assemblies --both-senses
   hardpoint optimize models/four_bar_inverse.toml -o results/found --save found.toml";
 
@@ -996,7 +997,7 @@ files are the same to the last byte.
 Examples:
   hardpoint sweep models/studies/strut_sweep.toml -o results/sweep
   hardpoint sweep models/studies/strut_sweep.toml --method sobol-indices --samples 2000
-  hardpoint sweep models/macpherson.toml --range B_z=-5..5 --range D_z=-3..3 --method factorial --levels 11
+  hardpoint sweep models/macpherson.toml --range lca_front_z=-5..5 --method factorial --levels 11 --curves toe
   hardpoint sweep models/studies/strut_sweep.toml --designs mine.csv --curves toe --format parquet -o results/mine";
 
 /// `hardpoint sweep`.
@@ -1013,7 +1014,7 @@ pub struct Sweep {
     /// Method that chooses the designs within the ranges [default: that of the file, or sobol]
     #[arg(long, value_enum)]
     pub method: Option<Method>,
-    /// Number of designs; for sobol_indices the number of pairs of designs [default: that of the file, or 1000]
+    /// Number of designs; for sobol-indices the number of pairs of designs [default: that of the file, or 1000]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=SweepSettings::MOST as i64))]
     pub samples: Option<u32>,
     /// Seed of the random numbers [default: that of the file, or 1]
@@ -1025,7 +1026,7 @@ pub struct Sweep {
     /// Solve the designs of a CSV file, whose first line names design variables
     #[arg(long, value_name = "FILE", conflicts_with_all = ["method", "samples", "seed", "levels", "range"])]
     pub designs: Option<PathBuf>,
-    /// Range of a variable, such as `B_x=-5..5`; may be repeated
+    /// Range of a variable, such as `lca_front_z=-5..5`; may be repeated
     #[arg(long, value_name = "NAME=FROM..TO", allow_hyphen_values = true)]
     pub range: Vec<String>,
     /// Also store the curve of this measure; may be repeated
@@ -1103,10 +1104,12 @@ pub enum Method {
     /// Every combination of evenly spaced values
     Factorial,
     /// Random, one design in each slice of every range
+    #[value(alias = "latin_hypercube")]
     LatinHypercube,
     /// Quasi-random points that fill the ranges evenly
     Sobol,
     /// Designs for Sobol indices: for v variables, (v + 2) times the number of samples
+    #[value(alias = "sobol_indices")]
     SobolIndices,
 }
 
@@ -1125,6 +1128,7 @@ pub enum TableForm {
 #[serde(rename_all = "snake_case")]
 pub enum Allocate {
     Rss,
+    #[value(alias = "worst_case")]
     WorstCase,
 }
 

@@ -99,7 +99,7 @@ fn calibrate_in(session: &Session, options: &Calibrate) -> Result<Outcome, Outco
     saved?;
     Ok(match found.status {
         Status::Interrupted => Outcome::Interrupted,
-        Status::IterationLimit | Status::Stuck => Outcome::FellShort,
+        Status::IterationLimit | Status::Stuck | Status::Diverged => Outcome::FellShort,
         Status::Found => Outcome::Done,
     })
 }

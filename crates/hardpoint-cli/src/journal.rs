@@ -220,10 +220,10 @@ fn encoded(block: &sweep::Block) -> Vec<u8> {
     }
     metrics.iter().for_each(|column| floats(&mut out, column));
     count(&mut out, failures.len());
-    for sweep::Failure { number, motion, code, why } in failures {
+    for sweep::Failure { number, motion, reason, why } in failures {
         count(&mut out, *number);
         count(&mut out, *motion);
-        text(&mut out, code);
+        text(&mut out, reason);
         text(&mut out, why);
     }
     count(&mut out, curves.len());
@@ -247,7 +247,7 @@ fn decoded(bytes: &[u8]) -> Option<sweep::Block> {
     }
     for _ in 0..from.count()? {
         let [number, motion] = [from.count()?, from.count()?];
-        block.failures.push(sweep::Failure { number, motion, code: from.text()?, why: from.text()? });
+        block.failures.push(sweep::Failure { number, motion, reason: from.text()?, why: from.text()? });
     }
     for _ in 0..from.count()? {
         let steps = (0..designs).map(|_| from.count().map(|n| n as u32)).collect::<Option<_>>()?;
@@ -287,10 +287,12 @@ mod tests {
     use super::*;
 
     fn block(first: usize) -> sweep::Block {
-        let failure =
-            |number| sweep::Failure {
-                number, motion: 1, code: "HP0401".into(), why: "locks — würgt".into()
-            };
+        let failure = |number| sweep::Failure {
+            number,
+            motion: 1,
+            reason: "locks".into(),
+            why: "locks — würgt".into(),
+        };
         sweep::Block {
             numbers: first..first + 3,
             metrics: vec![vec![first as f64, f64::MIN_POSITIVE, -0.0], vec![1e300, 0.1, f64::MAX]],

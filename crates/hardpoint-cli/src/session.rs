@@ -351,21 +351,27 @@ impl Session {
     /// Fails if the text does not support the changed design, or the file cannot be written.
     pub fn save(&self, file: &ModelFile, design: &[f64], to: &Path) -> Result<(), Outcome> {
         let text = self.edited(file, design)?;
+        let text = text_for(file, &text, to).map_err(|diagnostics| {
+            self.fail(file, diagnostics.list());
+            Outcome::Misunderstood
+        })?;
         write_alone(to, |out| out.write_all(text.as_bytes())).map_err(|e| self.not_written(&e))
     }
 
-    /// Checks before the work that changes of some variables can be saved in the model's text.
+    /// Checks before the work that changes of some variables can be saved in the model's text, and this in the folder
+    /// of `to`.
     ///
     /// # Errors
-    /// Fails if the text has no number for one of them.
+    /// Fails if the text has no number for one of them, or cannot name its files from there.
     pub fn can_save(
         &self,
         file: &ModelFile,
         variables: &[VariableId],
         to: Option<&Path>,
     ) -> Result<(), Outcome> {
-        let checked = if to.is_some() { file.check_savable(variables) } else { Ok(()) };
-        checked.map_err(|diagnostics| {
+        let Some(to) = to else { return Ok(()) };
+        let checked = file.check_savable(variables).and_then(|()| text_for(file, file.text(), to));
+        checked.map(drop).map_err(|diagnostics| {
             self.fail(file, diagnostics.list());
             Outcome::Misunderstood
         })
@@ -382,7 +388,7 @@ impl Session {
         design: &[f64],
         to: &Path,
     ) -> Result<(), (Vec<Diagnostic>, String, Outcome)> {
-        let text = file.edit(design).map_err(|found| {
+        let text = file.edit(design).and_then(|text| text_for(file, &text, to)).map_err(|found| {
             let why = found.list().first().map_or(String::new(), |d| d.message.clone());
             (found.list().to_vec(), why, Outcome::Misunderstood)
         })?;
@@ -576,6 +582,20 @@ impl Session {
         Outcome::Misunderstood
     }
 
+    /// Returns an error, which is reported, if the model does not have a measure that a request names.
+    pub fn check_measures<'n>(
+        &self,
+        file: &ModelFile,
+        names: impl IntoIterator<Item = &'n String>,
+    ) -> Result<(), Outcome> {
+        let outputs = hardpoint::measure::outputs(&file.model);
+        for name in names {
+            named("measure", name, outputs.iter().map(|o| o.name.as_str()))
+                .map_err(|e| self.refused(file, &e))?;
+        }
+        Ok(())
+    }
+
     /// Reports an invalid request of a study.
     pub fn refused(&self, file: &ModelFile, error: &RequestError) -> Outcome {
         let message = format!("`{}`: {}", file.file_name(), error.message);
@@ -683,6 +703,12 @@ impl Session {
     fn print_error(&self, diagnostics: &[Diagnostic]) {
         self.print_json(&document_of("error", diagnostics));
     }
+}
+
+/// Text of a model file for the folder of `to`.
+fn text_for(file: &ModelFile, text: &str, to: &Path) -> Result<String, Diagnostics> {
+    let folder = |path: &Path| path.parent().map(Path::to_owned).unwrap_or_default();
+    file.text_for(text, Some(&folder(Path::new(file.file_name()))), &folder(to))
 }
 
 /// JSON document of a command without a result.

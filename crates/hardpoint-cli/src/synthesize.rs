@@ -10,7 +10,7 @@ use hardpoint_report::gallery::{Card, gallery};
 use hardpoint_report::synthesis::{
     AnswerFact, SynthesisFacts, followed_model, model_text, picture, refusal, task_of,
 };
-use hardpoint_study::synthesis::{Answer, TaskError, synthesize};
+use hardpoint_study::synthesis::{Answer, synthesize};
 
 use crate::args::Synthesize;
 use crate::folder::{Folder, WriteError};
@@ -37,10 +37,14 @@ pub fn synthesize_in(session: &Session, options: &Synthesize) -> Result<Outcome,
         Outcome::BadModel
     })?;
     let folder = session.folder(options.output.as_deref())?;
-    let mut found = linkages_of(session, &file, options.answers)?;
     session.line(&text::bold(&file.name));
-    if let Some(folder) = folder {
-        write(session, &file, &mut found, folder)?;
+    session.patient(true);
+    let mut found = linkages_of(session, &file, options.answers)?;
+    if let Some(folder) = folder.filter(|_| !found.facts.is_interrupted()) {
+        match write(session, &file, &mut found, folder) {
+            Err(Outcome::Interrupted) => found.facts.interrupt(),
+            written => written?,
+        }
     }
     let mut facts = found.facts;
     facts.seconds = session.seconds();
@@ -54,7 +58,11 @@ pub fn synthesize_in(session: &Session, options: &Synthesize) -> Result<Outcome,
         let index = facts.files.first().map_or(String::new(), |path| format!("\nwritten: {path}\n"));
         text::print(&index);
     }
-    Ok(if facts.answers.is_empty() { Outcome::FellShort } else { Outcome::Done })
+    Ok(match (facts.is_interrupted(), facts.answers.is_empty()) {
+        (true, _) => Outcome::Interrupted,
+        (false, true) => Outcome::FellShort,
+        (false, false) => Outcome::Done,
+    })
 }
 
 /// Linkages of a task that the engine has followed.
@@ -79,12 +87,9 @@ pub fn linkages_of(
         let _working = session.working("looking for linkages");
         synthesize(&task, &|| !session.interrupted())
     };
-    let found = found.map_err(|error| match error {
-        TaskError::Interrupted => Outcome::Interrupted,
-        error => {
-            session.not_read(&refusal(file, &error));
-            Outcome::BadModel
-        }
+    let found = found.map_err(|error| {
+        session.not_read(&refusal(file, &error));
+        Outcome::BadModel
     })?;
     let mut facts = SynthesisFacts::of(file, &task, &found);
     let (mut answers, mut models) = (Vec::<Answer>::new(), Vec::<(String, ModelFile)>::new());
@@ -127,7 +132,6 @@ fn write(
     mut folder: Folder,
 ) -> Result<(), Outcome> {
     let SynthesizedLinkages { facts, answers, models } = found;
-    session.patient(true);
     let mut meter = session.meter("making pages", "answers");
     let mut cards = Vec::new();
     for (k, (content, model)) in models.iter().enumerate() {

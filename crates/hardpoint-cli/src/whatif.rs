@@ -76,11 +76,7 @@ pub fn whatif_in(
             nearest = ChangeFact::all(&model, file.units, &found);
         }
     }
-    let outputs = hardpoint::measure::outputs(&file.model);
-    for name in options.measure.iter().chain(&options.over) {
-        named("measure", name, outputs.iter().map(|o| o.name.as_str()))
-            .map_err(|e| session.refused(&file, &e))?;
-    }
+    session.check_measures(&file, options.measure.iter().chain(&options.over))?;
     let folder = options.output.as_ref().map(|path| Folder::open(&of_case(path, case)));
     let folder = folder.transpose().map_err(|e| session.not_written(&e))?;
     if let Some(to) = &options.save {

@@ -7,7 +7,7 @@ use hardpoint::model::{Dimension, DriverId, ElementId, Model, Reading};
 use hardpoint_file::{MeasuredData, ModelFile, Units};
 use hardpoint_study::calibrate::{
     BoundSide, Calibration, FittedParameter, FittedReading, Loss, NextReading, Status, UnidentifiableChange,
-    ValidatedReading, Validation,
+    UnreachedPosture, ValidatedReading, Validation,
 };
 use hardpoint_table::csv::CsvWriter;
 use serde::Serialize;
@@ -37,8 +37,32 @@ const SLIGHT: f64 = 1e-4;
 pub struct NotReachedFact {
     /// Line of the measurement file.
     pub line: u64,
-    /// Description of the event.
+    /// Description of the event, with the positions of the drivers.
     pub why: String,
+}
+
+impl NotReachedFact {
+    fn of(of: &CalibrationInputs<'_>, data: &MeasuredData, unreached: &UnreachedPosture) -> Self {
+        let UnreachedPosture { posture, why, last } = unreached;
+        let (model, target) = (of.model(), &data.measurements.postures[*posture]);
+        // Drivers that stay in the design configuration are of no interest.
+        let moved = |d: &usize| target[*d] != model.as_drawn(DriverId(*d));
+        let moved: Vec<usize> = (0..target.len()).filter(moved).collect();
+        let one = |d: usize, x: f64| {
+            let (driver, units) = (&model.drivers[d], of.units());
+            let quantity = model.driven(driver).quantity;
+            let shown = with_unit(units.from_si(quantity, x), symbol(units, quantity));
+            format!("{} = {shown}", driver.name)
+        };
+        let place = |at: &[f64]| moved.iter().map(|d| one(*d, at[*d])).collect::<Vec<_>>().join(", ");
+        let why = match last {
+            Some(last) if !moved.is_empty() => {
+                format!("{why} at {}, on the path to {}", place(last), place(target))
+            }
+            Some(_) | None => why.clone(),
+        };
+        Self { line: data.lines[*posture], why }
+    }
 }
 
 record! {
@@ -48,7 +72,6 @@ record! {
         let certainty = &found.certainty;
         let variables = (0..found.parameters.len()).map(|k| CalibratedVariable::of(of, k));
         let variables: Vec<CalibratedVariable> = variables.collect();
-        let line = |posture: usize| of.measured.lines[posture];
         let mut far_off: Vec<LargeResidual> = of
             .compared()
             .filter(|(_, f)| f.residual.abs() > FAR)
@@ -62,12 +85,12 @@ record! {
         let mut postures: Vec<usize> = of.compared().map(|(r, _)| r.posture).collect();
         postures.dedup();
         let scatter_of = of.compared().next().filter(|_| !of.has_sigmas()).map(|(r, _)| r.output);
-        let not_reached = found.not_reached.iter();
-        let not_reached = not_reached.map(|n| NotReachedFact { line: line(n.posture), why: n.why.clone() });
+        let not_reached = found.not_reached.iter().map(|n| NotReachedFact::of(of, of.measured, n));
         let status = match found.status {
             Status::Found if certainty.unidentifiable.is_empty() => "found",
             Status::Found => "not_told",
             Status::Stuck => "stuck",
+            Status::Diverged => "diverged",
             Status::IterationLimit => "iteration_limit",
             Status::Interrupted => "interrupted",
         };
@@ -85,7 +108,7 @@ record! {
     /// Name of the measurement file.
     data: String = of.data.into();
     /// Status at the end: `found`, `not_told` (found, but the readings do not determine all variables),
-    /// `stuck`, `iteration_limit` or `interrupted`.
+    /// `stuck`, `diverged`, `iteration_limit` or `interrupted`.
     status: &'static str = status;
     /// Status in words, with an instruction.
     message: String = String::new();
@@ -150,7 +173,7 @@ record! {
         let prior = certainty.prior_sigmas[k];
         let ratio = certainty.sigmas[k].zip(prior).map(|(s, p)| s / p);
         let source = match (certainty.bounds[k], certainty.sigmas[k], ratio) {
-            (None, ..) if of.found.status == Status::Stuck => "not fitted",
+            (None, ..) if matches!(of.found.status, Status::Stuck | Status::Diverged) => "not fitted",
             (Some(BoundSide::Lower), ..) => "at its lower bound",
             (Some(BoundSide::Upper), ..) => "at its upper bound",
             (None, None, _) => "undetermined",
@@ -168,7 +191,7 @@ record! {
     /// Fitted value: the value of a parameter, the change of all other variables.
     end: f64 = shown(start + by);
     /// Standard deviation; `null` if the readings and priors do not determine it, it is at a bound, or the search got
-    /// stuck.
+    /// stuck or diverged.
     sigma: Option<f64> = certainty.sigmas[k].map(shown);
     /// Mean of its prior; `null` without a prior of its own.
     prior_mean: Option<f64> = certainty.prior_means[k].map(|mean| shown(start + mean));
@@ -261,8 +284,7 @@ record! {
             let of_output = compared.iter().filter(|(r, _)| r.output == m).copied().collect::<Vec<_>>();
             ValidatedMeasure::of(of, m, &of_output)
         });
-        let not_reached = found.not_reached.iter();
-        let not_reached = not_reached.map(|n| NotReachedFact { line: data.lines[n.posture], why: n.why.clone() });
+        let not_reached = found.not_reached.iter().map(|n| NotReachedFact::of(of, data, n));
     }
     /// Name of the file.
     data: String = name.into();
@@ -573,6 +595,10 @@ impl CalibrateFacts {
                 "stuck, not at the best fit: better designs do not assemble, or stop before a posture of the table; \
                  check the measurements, or fit other variables{fit}"
             ),
+            "diverged" => "diverged: fitted values leave every sensible range, since the readings do not determine \
+                           them or do not fit the mechanism; give `bounds` or priors, fit fewer variables, or check \
+                           the readings"
+                .into(),
             "interrupted" => "interrupted: the best design so far".into(),
             _ => "the iteration limit was reached before the best fit: increase `--iterations`".into(),
         }

@@ -149,7 +149,8 @@ fn ended(file: &ModelFile, stop: &Stop, who: &str, left: String) -> Diagnostic {
     if !stop.joints.is_empty() {
         d = d.note(format!("the loop consists of {}", parts(model, &stop.joints)));
     }
-    if matches!(stop.kind, StopKind::Limit | StopKind::BranchChange) {
+    // A loop with one unknown has one pivot.
+    if matches!(stop.kind, StopKind::Limit | StopKind::BranchChange) && stop.pivot_ratio < 1.0 {
         d = d.note(format!(
             "its smallest pivot there is {} of the largest; 0 means a limit position",
             rounded(stop.pivot_ratio, 2)

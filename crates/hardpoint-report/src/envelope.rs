@@ -41,9 +41,8 @@ record! {
     /// Largest distance between the triangles and the envelope, at their centres, the middles of their edges, and
     /// points of the envelope.
     deviation: f64 = in_units(1, found.surface.deviation);
-    /// Distance by which positions between these reach beyond the envelope: a quarter of that by which the others reach
-    /// beyond the envelope of every second one.
-    between_poses: f64 = in_units(1, 0.25 * found.between_poses);
+    /// Estimate of the distance by which positions between these reach beyond the envelope.
+    between_poses: f64 = in_units(1, found.between_poses);
     /// True if both are within the permitted error.
     within_error: bool = found.is_within_error;
     /// Number of positions of the shape.

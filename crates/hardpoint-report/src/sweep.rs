@@ -197,6 +197,7 @@ pub struct Tally {
     /// Number of designs so far that do not reach the end of a motion.
     pub failed: usize,
     cost: StudyCost,
+    /// Failures with their reason and motion.
     failures: Vec<(String, usize, FailureFact)>,
 }
 
@@ -334,7 +335,7 @@ impl SweepInputs<'_> {
         let mut last = None;
         for failure in &block.failures {
             let known = tally.failures.iter_mut();
-            match known.into_iter().find(|(code, m, _)| *code == failure.code && *m == failure.motion) {
+            match known.into_iter().find(|(reason, m, _)| *reason == failure.reason && *m == failure.motion) {
                 Some((_, _, fact)) => {
                     fact.count += 1;
                     // Failures within a block are in the order of motions.
@@ -342,7 +343,7 @@ impl SweepInputs<'_> {
                 }
                 None => {
                     let fact = FailureFact::of(self.case(failure.motion), &failure.why, failure.number, 1);
-                    tally.failures.push((failure.code.clone(), failure.motion, fact));
+                    tally.failures.push((failure.reason.clone(), failure.motion, fact));
                 }
             }
             last = Some(failure.number);

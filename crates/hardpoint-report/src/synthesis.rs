@@ -26,6 +26,8 @@ const FOLLOWED: f64 = 1e-9;
 const STEPS: usize = 80;
 /// Design variables of a model may move its joints by this part of the size of the task.
 const BOUNDS: f64 = 0.05;
+/// Status of a synthesis that the caller ended.
+const INTERRUPTED: &str = "interrupted";
 /// Name of the guided body in models.
 const COUPLER: &str = "coupler";
 
@@ -115,7 +117,6 @@ pub fn refusal(file: &TaskFile, error: &TaskError) -> Diagnostics {
             .note("four poses leave a curve of fixed pivots, and five leave at most four points")
             .help("use `fixed_region`, or give three poses"),
         TaskError::NoType => file.error(COUNT, "no type of linkage is selected", None, Some("linkages")),
-        TaskError::Interrupted => whole(COUNT, "the synthesis was interrupted"),
     };
     file.diagnostics(vec![diagnostic])
 }
@@ -418,8 +419,12 @@ record! {
     task: String = file.name.clone();
     /// Name of the task file.
     file: String = file.file_name().into();
-    /// `found`, or `none` if no linkage fulfils the task.
-    status: &'static str = if found.answers.is_empty() { "none" } else { "found" };
+    /// `found`, `none` if no linkage fulfils the task, or `interrupted`, with the answers so far.
+    status: &'static str = match (found.is_interrupted, found.answers.is_empty()) {
+        (true, _) => INTERRUPTED,
+        (false, true) => "none",
+        (false, false) => "found",
+    };
     /// Kind of aim: `poses` or `path`.
     aim: &'static str = if is_poses { "poses" } else { "path" };
     /// Number of poses or points.
@@ -593,6 +598,13 @@ impl SynthesisFacts {
     /// Lines of the summary.
     pub fn rows(&self) -> Vec<(&'static str, String)> {
         let mut rows = vec![("task", format!("{} ({})", self.task, count(self.count, self.one())))];
+        if self.is_interrupted() {
+            let message = match self.answers.len() {
+                0 => "interrupted before an answer was found".to_owned(),
+                answers => format!("interrupted: {} so far", count(answers, "answer")),
+            };
+            rows.push(("result", message));
+        }
         if let (Some(cranks), Some(sliders)) = (self.cranks, self.sliders) {
             let mut dyads = match self.count {
                 5 => format!("{cranks} of the 4 cranks are real"),
@@ -617,9 +629,19 @@ impl SynthesisFacts {
         if self.aim == "poses" { "pose" } else { "point" }
     }
 
+    /// True if the caller ended the synthesis.
+    pub fn is_interrupted(&self) -> bool {
+        self.status == INTERRUPTED
+    }
+
+    /// Marks a synthesis that the caller ended after the search.
+    pub fn interrupt(&mut self) {
+        self.status = INTERRUPTED;
+    }
+
     /// The reason why there is no answer, with an instruction.
     pub fn advice(&self) -> Option<(String, String)> {
-        if !self.answers.is_empty() {
+        if !self.answers.is_empty() || self.is_interrupted() {
             return None;
         }
         if self.aim == "poses" && self.cranks.unwrap_or(0) + self.sliders.unwrap_or(0) < 2 {

@@ -371,7 +371,7 @@ pub struct StudyReply {
     pub tables: Vec<Table>,
     /// Optimised design, after an optimisation.
     pub change: Option<Vec<VariableSetting>>,
-    /// Model text with the optimised design.
+    /// Model text with the optimised design; none where the text cannot have it, for which `message` has the reason.
     pub text: Option<String>,
 }
 

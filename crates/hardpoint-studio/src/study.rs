@@ -97,20 +97,18 @@ pub(crate) fn run_optimization(
     let facts = OptimizeFacts::of(&file, settings, &found);
     let best = found.best.and_then(|k| found.searches[k].found.as_ref());
     let design = best.map(|best| rounded(&file, settings, &best.design));
-    let text = design.as_ref().map(|design| file.edit(design)).transpose();
-    let text = text.map_err(|all| -> EngineError {
-        all.list().iter().map(|d| DiagnosticMessage::of(&model.text, d)).collect()
-    })?;
+    let text = design.as_ref().map(|design| file.edit(design));
+    let mut message: Vec<String> =
+        facts.rows().into_iter().map(|(what, how)| format!("{what}: {how}")).collect();
+    if let Some(Err(refusal)) = &text {
+        let reasons: Vec<_> = refusal.list().iter().map(|d| d.message.as_str()).collect();
+        message.push(format!("not saved: {}", reasons.join("; ")));
+    }
     Ok(StudyReply {
-        message: facts
-            .rows()
-            .into_iter()
-            .map(|(what, how)| format!("{what}: {how}"))
-            .collect::<Vec<_>>()
-            .join("; "),
+        message: message.join("; "),
         tables: facts.tables(),
         change: design.map(|design| changes(&file, &design)),
-        text,
+        text: text.and_then(Result::ok),
     })
 }
 

@@ -1,17 +1,20 @@
 //! Envelope of a shape: the space that it sweeps over motions and grids, seen from a body, as a closed surface.
 //!
 //! The envelope is the union of the shape at many poses: where the least of its signed distances is not positive. The
-//! poses are doubled until those between them reach no farther beyond the surface than half of the error that is
-//! permitted, and the cells of the surface are halved until its triangles deviate by no more than the other half. Both
-//! are measured from the triangles to the envelope and from points of the envelope to the triangles: parts that are
-//! thinner than a cell have no triangles.
+//! first poses are so close that no driver moves far between two of them, and that the shape travels by a part of its
+//! size only. Then further ones are added between all of them, until what these reach beyond the surface leaves no more
+//! than half of the error that is permitted. The cells of the surface are halved until its triangles deviate by no more
+//! than the other half: measured from the triangles to the envelope and from points of the envelope to the triangles,
+//! since parts that are thinner than a cell have no triangles.
 
 mod request;
 mod surface;
 
+use std::cell::Cell;
 use std::ops::ControlFlow;
 
-use hardpoint::model::{Grid, Model};
+use hardpoint::joint::Quantity;
+use hardpoint::model::{Grid, Model, ShapeKind};
 use hardpoint::motion::{Stop, StopKind};
 use hardpoint::run::{Analysis, Run, SweptShape};
 use hardpoint::space::Vec3;
@@ -27,9 +30,32 @@ use super::request::RequestError;
 
 /// Maximum number of cells that the surface passes: a file of about 300 MB.
 const MOST_CELLS: usize = 1_000_000;
-/// Poses between those of an envelope reach beyond it by this fraction of the amount by which these reach beyond the
-/// envelope of half of them: it is of second order in their spacing.
-const QUARTER: f64 = 0.25;
+/// Maximum number of distances from cores or triangles that are evaluated for all surfaces: about a minute.
+const MOST_DISTANCES: usize = 600_000_000;
+/// Number of triangles of a mesh from which the distance of a point is computed, about.
+const TRIANGLES_OF_MESH: usize = 20;
+/// Poses between those of an envelope reach beyond it by at most this part of the amount by which the last ones that
+/// were added reached beyond the others, where the shape is round: scallops are of second order in the spacing.
+const OF_ROUND: f64 = 0.375;
+/// The same where the shape has edges: what a corner leaves out between two poses is of first order.
+const OF_SHARP: f64 = 1.25;
+/// Growth, as a part of the radius around the core, above which edges that are rounded by it are sharp.
+const SHARP: f64 = 0.1;
+/// Maximum travel of the shape's points between the first poses, as a fraction of its radius.
+const TRAVEL: f64 = 0.3;
+/// Maximum travel of a driver of a grid between the first poses, rad or sizes of the mechanism.
+const DRIVER_TRAVEL: f64 = 0.15;
+/// Maximum number of passes in which poses are added between the first ones.
+const MOST_PASSES: usize = 8;
+/// Maximum number of pieces of an interval in one of these passes.
+const MOST_PIECES: f64 = 64.0;
+/// Poses are added at the middle of an interval, give or take at most this part of it: a motion that repeats itself
+/// within the intervals, or a shape that looks the same after a part of a turn, is seen at other places.
+const IRREGULAR: f64 = 0.05;
+/// Fraction of the golden ratio.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+/// Maximum number of corners at which growth is measured.
+const MOST_CORNERS: usize = 100_000;
 /// Default of the permitted error, as a fraction of the extent of the shape.
 const ERROR: f64 = 1.0 / 200.0;
 /// Maximum number of poses.
@@ -65,8 +91,7 @@ pub struct Envelope {
     pub poses: usize,
     /// Permitted error, m.
     pub error: f64,
-    /// Distance by which the poses between half of them reach beyond the envelope of that half, m. All poses between
-    /// those of the envelope reach beyond it by about a quarter of that.
+    /// Estimate of the distance by which poses between those of the envelope reach beyond it, m.
     pub between_poses: f64,
     /// False if the permitted error was not reached with the maximum numbers of poses and cells.
     pub is_within_error: bool,
@@ -97,9 +122,28 @@ impl LeastOf for Union<'_> {
 }
 
 impl Union<'_> {
-    /// The least of all parts.
-    fn least(&self, p: Vec3) -> f64 {
-        (0..self.swept.len()).map(|k| self.part(k, p)).fold(f64::INFINITY, f64::min)
+    /// The greatest of the least distances of these points from all parts. Most points are near the part that was the
+    /// nearest to the one before, or one beside it: others are not evaluated.
+    fn greatest(&self, points: impl Iterator<Item = Vec3>) -> f64 {
+        let count = self.swept.len();
+        let (mut most, mut last) = (0.0_f64, 0_usize);
+        for p in points {
+            let mut least = (f64::INFINITY, last);
+            for step in 0..count.max(1) * 2 {
+                let way = step.div_ceil(2);
+                let k = if step % 2 == 0 { last.checked_sub(way) } else { last.checked_add(way) };
+                let Some(k) = k.filter(|k| *k < count) else { continue };
+                let distance = self.part(k, p);
+                if distance < least.0 {
+                    least = (distance, k);
+                }
+                if distance <= most {
+                    break;
+                }
+            }
+            (most, last) = (most.max(least.0), least.1);
+        }
+        most
     }
 
     /// A cube around everything, whose corner is no round multiple of a cell from any pose: symmetric shapes do not
@@ -132,11 +176,14 @@ pub fn envelope(
     more: &(dyn Fn() -> bool + Sync),
 ) -> Result<Envelope, EnvelopeError> {
     let mut cost = StudyCost { designs: 1, ..StudyCost::default() };
-    let poses_of = |halvings: u32, cost: &mut StudyCost| {
-        let mut gathered =
-            Gathered { swept: SweptShape::new(request.shape, request.relative_to), stops: vec![] };
-        for sweep in &request.sweeps {
-            gathered.add(model, formulation, design, sweep, halvings, cost, more)?;
+    let poses_of = |motions: &[Positions<'_>], cost: &mut StudyCost| {
+        let mut gathered = Gathered {
+            swept: SweptShape::new(request.shape, request.relative_to),
+            stops: vec![],
+            paths: vec![],
+        };
+        for motion in motions {
+            gathered.add(model, formulation, design, motion, cost, more)?;
         }
         if !more() {
             return Err(EnvelopeError::Interrupted);
@@ -146,31 +193,70 @@ pub fn envelope(
         }
         Ok(gathered)
     };
+    let each = match &model.shapes[request.shape.0].kind {
+        ShapeKind::Hull { facets, .. } => facets.len(),
+        ShapeKind::Mesh { .. } => TRIANGLES_OF_MESH,
+        ShapeKind::Sphere { .. }
+        | ShapeKind::Capsule { .. }
+        | ShapeKind::Ring { .. }
+        | ShapeKind::Cylinder { .. }
+        | ShapeKind::Tyre { .. }
+        | ShapeKind::Plane { .. } => 1,
+    };
+    let most_distances = MOST_DISTANCES / each;
+    let left = Cell::new(most_distances);
     let of = |swept: &SweptShape, cell: f64| {
         let union = Union { swept, margin: request.margin };
-        let made = surface(&union, swept.len(), union.cube(), cell, MOST_CELLS, more);
+        let made = surface(&union, swept.len(), union.cube(), cell, MOST_CELLS, &left, more);
         if more() { Ok(made) } else { Err(EnvelopeError::Interrupted) }
     };
-    let mut found = poses_of(0, &mut cost)?;
-    let extent = 2.0 * (found.swept.ball(0).1 + request.margin);
-    let error = request.error.unwrap_or(extent * ERROR);
-    let (half, first_cell) = (0.5 * error, extent / FIRST_CELLS);
-    let (mut between, mut enough, mut made) = (f64::INFINITY, false, None);
-    for halvings in 1.. {
-        let finer = poses_of(halvings, &mut cost)?;
-        let union = Union { swept: &found.swept, margin: request.margin };
-        let beyond = |surface: &Triangles| {
-            surface.vertices.iter().chain(&surface.samples).map(|p| union.least(*p)).fold(0.0, f64::max)
-        };
-        made = of(&finer.swept, first_cell)?;
-        between = made.as_ref().map_or(f64::INFINITY, beyond);
-        let grew = finer.swept.len() > found.swept.len();
-        found = finer;
-        if QUARTER * between <= half || !grew {
-            enough = QUARTER * between <= half;
+    let mut motions = Vec::new();
+    for sweep in &request.sweeps {
+        motions.push(Positions::first(model, formulation, sweep)?);
+    }
+    let mut found = poses_of(&motions, &mut cost)?;
+    let radius = found.swept.ball(0).1;
+    let mut is_resolved = false;
+    for _ in 0..MOST_PASSES {
+        let longest = TRAVEL * radius;
+        let closer: Vec<Positions<'_>> =
+            motions.iter().zip(&found.paths).map(|(motion, path)| motion.closer(path, longest)).collect();
+        is_resolved = closer.iter().zip(&motions).all(|(new, old)| new.count() == old.count());
+        if is_resolved || closer.iter().map(Positions::count).sum::<usize>() > MOST_POSES {
             break;
         }
-        if found.swept.len() > MOST_POSES {
+        motions = closer;
+        found = poses_of(&motions, &mut cost)?;
+    }
+    let extent = 2.0 * (radius + request.margin);
+    let error = request.error.unwrap_or(extent * ERROR);
+    let (half, first_cell) = (0.5 * error, extent / FIRST_CELLS);
+    let rounding = request.margin + found.swept.round();
+    let (mut between, mut enough, mut made) = (TRAVEL * radius, false, None);
+    for level in 0.. {
+        motions = motions.iter().map(|motion| motion.finer(level)).collect();
+        let finer = poses_of(&motions, &mut cost)?;
+        let Some(surface) = of(&finer.swept, first_cell)? else {
+            // More poses take too long.
+            if made.is_none() {
+                left.set(most_distances);
+                made = of(&found.swept, first_cell)?;
+            }
+            break;
+        };
+        let union = Union { swept: &found.swept, margin: request.margin };
+        let every = finer.swept.corner_count() / MOST_CORNERS + 1;
+        let corners = (0..finer.swept.len()).flat_map(|k| finer.swept.corners(k)).step_by(every);
+        let points = surface.vertices.iter().chain(&surface.samples).copied();
+        let cores = Union { swept: &found.swept, margin: -found.swept.round() };
+        let (of_surface, of_corners) = (union.greatest(points), cores.greatest(corners));
+        made = Some(surface);
+        let is_sharp = of_surface.max(of_corners) > SHARP * rounding;
+        between = if is_sharp { of_surface.max(of_corners) * OF_SHARP } else { of_surface * OF_ROUND };
+        let grew = finer.swept.len() > found.swept.len();
+        found = finer;
+        enough = between <= half && is_resolved;
+        if between <= half || !grew || found.swept.len() > MOST_POSES {
             break;
         }
     }
@@ -202,29 +288,92 @@ pub fn envelope(
     })
 }
 
+/// Positions of a sweep at which the shape is taken.
+enum Positions<'a> {
+    /// Times of a motion of the model.
+    Times { model: Box<Model>, times: Vec<f64> },
+    /// Values of the drivers of a grid.
+    Grid { grid: &'a Grid, values: [Vec<f64>; 2] },
+}
+
+impl<'a> Positions<'a> {
+    /// Those of the file, and others between them, so that no driver moves far between two of them.
+    fn first(model: &Model, formulation: Formulation, sweep: &'a Sweep) -> Result<Self, TopologyError> {
+        Ok(match sweep {
+            Sweep::Motion(case) => {
+                let own = case.map_or_else(|| model.clone(), |case| model.in_case(case));
+                let model = Model { metrics: Vec::new(), ..own };
+                let within = Analysis::with(&model, formulation)?.swept_times();
+                let times = if within.len() > MOST_POSES { model.times.clone() } else { within };
+                Self::Times { model: Box::new(model), times }
+            }
+            Sweep::Grid(grid) => {
+                let fine = |k: usize| {
+                    let is_length =
+                        model.driven(&model.drivers[grid.drivers[k].0]).quantity == Quantity::Length;
+                    let longest = DRIVER_TRAVEL * if is_length { model.size() } else { 1.0 };
+                    divided(&grid.values[k], |_, h| h.abs() / longest)
+                };
+                Self::Grid { grid, values: [fine(0), fine(1)] }
+            }
+        })
+    }
+
+    /// With times between those among which the shape travels farther than this.
+    fn closer(&self, path: &[[f64; 2]], longest: f64) -> Self {
+        match self {
+            Self::Times { model, times } => {
+                let reach = |k: usize, h: f64| match path.get(k..k + 2) {
+                    Some([[_, from], [_, to]]) => h * from.max(*to) / longest,
+                    Some(_) | None => 1.0,
+                };
+                Self::Times { model: model.clone(), times: divided(times, reach) }
+            }
+            // Positions of a grid have no speeds.
+            Self::Grid { grid, values } => Self::Grid { grid, values: values.clone() },
+        }
+    }
+
+    /// With a further position in each interval.
+    fn finer(&self, level: u32) -> Self {
+        match self {
+            Self::Times { model, times } => Self::Times { model: model.clone(), times: halved(times, level) },
+            Self::Grid { grid, values } => {
+                Self::Grid { grid, values: values.each_ref().map(|values| halved(values, level)) }
+            }
+        }
+    }
+
+    fn count(&self) -> usize {
+        match self {
+            Self::Times { times, .. } => times.len(),
+            Self::Grid { values: [a, b], .. } => a.len() * b.len(),
+        }
+    }
+}
+
 /// Poses of a shape, and the stops of motions that ended early.
 struct Gathered {
     swept: SweptShape,
     stops: Vec<Stop>,
+    /// Per sweep: times that were solved, and bounds of the speeds of the shape's points; none of a grid.
+    paths: Vec<Vec<[f64; 2]>>,
 }
 
 impl Gathered {
-    #[expect(clippy::too_many_arguments, reason = "the parts of one motion")]
     fn add(
         &mut self,
         model: &Model,
         formulation: Formulation,
         design: &[f64],
-        sweep: &Sweep,
-        halvings: u32,
+        positions: &Positions<'_>,
         cost: &mut StudyCost,
         more: &(dyn Fn() -> bool + Sync),
     ) -> Result<(), TopologyError> {
-        match sweep {
-            Sweep::Motion(case) => {
-                let own = case.map_or_else(|| model.clone(), |case| model.in_case(case));
-                let times = halved(&own.times, halvings);
-                let moved = Model { times, metrics: Vec::new(), ..own };
+        let mut path = Vec::new();
+        match positions {
+            Positions::Times { model, times } => {
+                let moved = Model { times: times.clone(), ..(**model).clone() };
                 let analysis = Analysis::with(&moved, formulation)?;
                 let go_on = |_| if more() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
                 let run = Run::new().at(design).without_measures().without_sensitivities().progress(go_on);
@@ -232,12 +381,12 @@ impl Gathered {
                 cost.motions += 1;
                 cost.steps += solution.motion.len();
                 let steps = 0..solution.motion.len();
-                self.swept.add(&analysis, design, &solution.motion, steps);
+                let speeds = self.swept.add(&analysis, design, &solution.motion, steps);
+                path.extend(solution.motion.times.iter().zip(speeds).map(|(time, speed)| [*time, speed]));
                 self.note(solution.stop.as_ref());
             }
-            Sweep::Grid(grid) => {
-                let values = grid.values.each_ref().map(|values| halved(values, halvings));
-                let finer = Grid { values, ..grid.clone() };
+            Positions::Grid { grid, values } => {
+                let finer = Grid { values: values.clone(), ..(*grid).clone() };
                 each_half_row(model, &finer, formulation, design, more, |half| {
                     cost.motions += 1;
                     cost.steps += half.solution.motion.len();
@@ -248,6 +397,7 @@ impl Gathered {
                 })?;
             }
         }
+        self.paths.push(path);
         Ok(())
     }
 
@@ -256,14 +406,27 @@ impl Gathered {
     }
 }
 
-/// Values with intermediate ones: each interval is halved this often.
-fn halved(values: &[f64], halvings: u32) -> Vec<f64> {
-    let pieces = 1_usize << halvings;
-    let between = |pair: &[f64]| {
+/// Values with others between them: interval k of length h is divided into `parts(k, h)` equal pieces, rounded up.
+fn divided(values: &[f64], parts: impl Fn(usize, f64) -> f64) -> Vec<f64> {
+    let between = |(k, pair): (usize, &[f64])| {
         let [a, b] = [pair[0], pair[1]];
-        (0..pieces).map(move |k| a + (b - a) * k as f64 / pieces as f64).collect::<Vec<f64>>()
+        let pieces = parts(k, b - a).ceil().clamp(1.0, MOST_PIECES);
+        (0..pieces as usize).map(move |n| a + (b - a) * n as f64 / pieces).collect::<Vec<f64>>()
     };
-    let mut all: Vec<f64> = values.windows(2).flat_map(between).collect();
+    let mut all: Vec<f64> = values.windows(2).enumerate().flat_map(between).collect();
+    all.extend(values.last());
+    all
+}
+
+/// Values with another one in each interval, near its middle.
+fn halved(values: &[f64], level: u32) -> Vec<f64> {
+    let mut all = Vec::with_capacity(2 * values.len());
+    for (k, pair) in values.windows(2).enumerate() {
+        let [a, b] = [pair[0], pair[1]];
+        // Multiples of the golden ratio are spread evenly, and repeat nowhere.
+        let spread = ((k + 1) as f64 * GOLDEN + f64::from(level) * 0.5).fract();
+        all.extend([a, a + (b - a) * (0.5 + IRREGULAR * (2.0 * spread - 1.0))]);
+    }
     all.extend(values.last());
     all
 }

@@ -12,6 +12,8 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use hardpoint_tape::LANES;
 
+use hardpoint::model::Model;
+use hardpoint::motion::{Stop, StopKind};
 use hardpoint::run::{Run, Solution};
 
 use super::evaluation::Motions;
@@ -106,4 +108,24 @@ impl Motions<'_> {
         }
         found
     }
+}
+
+/// Reason of a failure: its description without the numbers that depend on the design. Designs that fail for one reason
+/// are counted together.
+pub(crate) fn failure_reason(stop: &Stop, model: &Model) -> String {
+    let kind = match stop.kind {
+        StopKind::LimitLoad { .. } => StopKind::LimitLoad { part: 0.0 },
+        kind @ (StopKind::Limit
+        | StopKind::BranchChange
+        | StopKind::DoesNotAssemble
+        | StopKind::Locked { .. }
+        | StopKind::LawNotFinite { .. }
+        | StopKind::TooFar { .. }
+        | StopKind::JointLimit { .. }
+        | StopKind::Interrupted
+        | StopKind::NothingHolds { .. }
+        | StopKind::NoEquilibrium
+        | StopKind::Unstable { .. }) => kind,
+    };
+    Stop { kind, failed_time: 0.0, ..stop.clone() }.headline(model)
 }

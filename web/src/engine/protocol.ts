@@ -423,7 +423,7 @@ tables: Array<Table>,
  */
 change: Array<VariableSetting> | null,
 /**
- * Model text with the optimised design.
+ * Model text with the optimised design; none where the text cannot have it, for which `message` has the reason.
  */
 text: string | null, };
 

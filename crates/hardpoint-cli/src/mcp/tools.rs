@@ -92,7 +92,10 @@ pub static TOOLS: &[Tool] = &[
         call: |session, collector, given| {
             let Asked { model, case, measures, variables, rates, .. } = params_of(given)?;
             of_model(model, |path| {
-                let each = |file: ModelFile, _: Option<&str>| solve(session, &file);
+                let each = |file: ModelFile, _: Option<&str>| {
+                    session.check_measures(&file, &measures)?;
+                    solve(session, &file)
+                };
                 let outcome = session.for_motions(path, &Motions { case }, each);
                 let most = variables.unwrap_or(MOST);
                 in_cases(collector, outcome, |document| results_of(document, &measures, most, rates))

@@ -384,7 +384,7 @@ fn synthesized(session: &Session, asked: &StudyRequest) -> Result<End, Outcome> 
         Outcome::BadModel
     })?;
     let found = synthesize::linkages_of(session, &task, None)?;
-    let pages = found.pages(session)?;
+    let pages = if found.facts.is_interrupted() { Vec::new() } else { found.pages(session)? };
     let message = match found.facts.advice() {
         Some((why, help)) => format!("{why}; {help}"),
         None => found.facts.rows().into_iter().map(|(_, line)| line).collect::<Vec<_>>().join(". "),

@@ -195,3 +195,52 @@ fn a_fit_that_better_designs_would_not_move_is_stuck() {
     assert!((fitted["end"].as_f64().unwrap() - 80.0).abs() < 0.1, "{fitted}");
     assert_eq!((&fitted["sigma"], &summary["next"]), (&serde_json::Value::Null, &serde_json::json!([])));
 }
+
+/// A lever on an actuator of 35.6 cm, which is at most 40.3 + 30 cm long.
+const LEVER: &str = r#"
+name = "lever"
+units = { length = "cm", angle = "rad" }
+parameters.e = { value = 30, unit = "length" }
+parameters.beta = { value = 0.9, unit = "angle" }
+hardpoints = { A = [0, 0, 0], G = [40, -5, 0], E = ["e*cos(beta)", "e*sin(beta)", 0], T = [50, 60, 0] }
+bodies = { lever = {} }
+joints.A = { type = "revolute", bodies = ["ground", "lever"], at = "A", axis = "z" }
+points.T = { body = "lever", at = "T" }
+drivers.act = { from = { body = "ground", at = "G" }, to = { body = "lever", at = "E" }, law = "2*t" }
+design.Gx = { move = "G", along = "x", fixed_length = false }
+measures.rot = { type = "coordinate", joint = "A" }
+time = { end = 1, steps = 4 }
+"#;
+
+#[test]
+fn a_posture_out_of_reach_is_reported_by_its_drivers() {
+    let bench = Bench::with(&[]);
+    bench.put("lever.toml", LEVER);
+    bench.put("read.csv", "act,rot,#note\n0,0.0,first\n-2,0.07,\n50,0.3,out of reach\n4,-0.14,\n");
+    let arguments =
+        ["calibrate", "lever.toml", "read.csv", "--sigma", "rot=0.01", "--variable", "Gx", "--json"];
+    let output = bench.run(&arguments);
+    let summary: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    // sqrt(40^2 + 5^2) + 30 - sqrt((40 - 30 cos 0.9)^2 + (5 + 30 sin 0.9)^2) = 34.70
+    let why = "the mechanism reaches a limit position at act = 34.7 cm, on the path to act = 50 cm";
+    assert_eq!(summary["not_reached"], serde_json::json!([{ "line": 4, "why": why }]), "{summary}");
+}
+
+#[test]
+fn a_fit_that_runs_away_is_reported_as_such() {
+    let bench = Bench::with(&[]);
+    let priors = "design.Gy = { move = \"G\", along = \"y\", fixed_length = false }\n\
+                  [calibrate]\noffsets = [{ of = \"rot\", sigma = 0.01 }]\n\
+                  [calibrate.variables]\nbeta = { sigma = 0.02, mean = 0.88 }\ne = 0.5\n";
+    let model = LEVER.replace("unit = \"length\" }", "unit = \"length\", bounds = [25, 35] }");
+    bench.put("lever.toml", &format!("{model}{priors}"));
+    // The lever turns in the other sense: only an actuator from infinitely far on the other side would do that.
+    bench.put("read.csv", "act,rot,T.x\n0,0.0,50\n-2,0.04,48\n-4,0.09,45\n3,,\n4,-0.1,54\n");
+    let arguments = ["calibrate", "lever.toml", "read.csv", "--sigma", "rot=0.01", "--sigma", "T.x=0.1"];
+    let output = bench.run(&[&arguments[..], &["--json"]].concat());
+    let summary: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!((output.status.code(), &summary["status"]), (Some(1), &"diverged".into()), "{summary}");
+    assert!(summary["message"].as_str().unwrap().contains("do not determine them"), "{summary}");
+    let fitted = summary["variables"].as_array().unwrap().iter().find(|v| v["name"] == "Gx").unwrap();
+    assert_eq!((&fitted["sigma"], &fitted["source"]), (&serde_json::Value::Null, &"not fitted".into()));
+}

@@ -7,6 +7,7 @@ mod dxf;
 mod fmu;
 mod gltf;
 mod golden;
+mod help;
 mod import;
 mod joint_limits;
 mod map;

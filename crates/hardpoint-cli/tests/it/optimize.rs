@@ -1,6 +1,13 @@
 //! `hardpoint optimize`, saving, and commands over the cases of a file.
 
+use std::num::NonZero;
+use std::ops::ControlFlow;
 use std::path::Path;
+
+use hardpoint::topology::Formulation;
+use hardpoint_report::optimize::{OptimizeFacts, to_save};
+use hardpoint_study::optimize::{Overrides, Request, judge, optimize};
+use hardpoint_study::{Control, Motions, Progress};
 
 use crate::bench::Bench;
 
@@ -385,27 +392,38 @@ optimize.goals.high = { target = 15 }
 time = { end = 1, steps = 10 }
 "#;
 
+fn table(travel: f64) -> String {
+    format!("time,travel\n0,0\n0.5,{}\n1,{travel}\n", 0.5 * travel)
+}
+
 #[test]
 fn a_saved_design_that_stops_or_comes_too_near_to_a_singular_position_is_no_optimum() {
-    let table = |travel: f64| format!("time,travel\n0,0\n0.5,{}\n1,{travel}\n", 0.5 * travel);
+    // The saved text is read again with another table than the one of the search.
     let saved = |margin: &str, travel: f64| {
         let bench = Bench::with(&[]);
         bench.put("pulled.toml", &format!("{PULLED}{margin}"));
         bench.put("travel.csv", &table(5.0));
-        // The saved model is next to another file of that name.
-        std::fs::create_dir(bench.path("elsewhere")).unwrap();
-        bench.put("elsewhere/travel.csv", &table(travel));
-        let run = ["optimize", "pulled.toml", "--save", "elsewhere/found.toml"];
-        let output = bench.run(&[&run[..], &["--json"]].concat());
-        let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-        let output = bench.run(&run);
-        (output.status.code(), json, String::from_utf8(output.stdout).unwrap())
+        let file = hardpoint_file::read(&bench.path("pulled.toml")).unwrap();
+        let settings = Request::of(&file.model, Overrides::default()).unwrap();
+        let asked = &settings.settings;
+        let models = file.model.motions();
+        let motions = Motions::of(&models, Formulation::Relative).unwrap();
+        let mut progress = |_: Progress<'_>| ControlFlow::Continue(());
+        let control = Control { threads: NonZero::<usize>::MIN, progress: &mut progress, more: &|| true };
+        let found = optimize(&file.model, &motions, &settings, control);
+        let mut facts = OptimizeFacts::of(&file, asked, &found);
+        let best = found.best.and_then(|k| found.searches[k].found.as_ref()).unwrap();
+        let text = file.edit(&to_save(&file, &motions, asked, &best.design)).unwrap();
+
+        bench.put("travel.csv", &table(travel));
+        bench.put("found.toml", &text);
+        let again = hardpoint_file::read(&bench.path("found.toml")).unwrap().model;
+        let models = again.motions();
+        let motions = Motions::of(&models, Formulation::Relative).unwrap();
+        let judged = judge(&again, &motions, again.optimization.as_ref().unwrap(), &[]);
+        facts.check_saved("found.toml", judged.map_err(|failed| failed.why), asked);
+        serde_json::to_value(&facts).unwrap()
     };
-    for margin in ["", "optimize.min_margin = 0.15\n"] {
-        let (code, json, text) = saved(margin, 5.0);
-        assert_eq!((code, json["status"].as_str()), (Some(0), Some("optimal")), "{text}");
-        assert!(!text.contains("not the one found"), "{text}");
-    }
     for (margin, travel, why) in [
         ("", 12.0, "cannot move beyond"),
         ("optimize.min_margin = 0.15\n", 12.0, "cannot move beyond"),
@@ -413,18 +431,56 @@ fn a_saved_design_that_stops_or_comes_too_near_to_a_singular_position_is_no_opti
         // The nominal design exceeds this margin; the saved one does not.
         ("optimize.min_margin = 0.15\n", 5.1, ""),
     ] {
-        let (code, json, text) = saved(margin, travel);
+        let json = saved(margin, travel);
         if why.is_empty() {
-            assert_eq!((code, json["status"].as_str()), (Some(0), Some("optimal")), "{text}");
+            assert_eq!(json["status"], "optimal", "{json}");
             assert!(json["saved"]["margin"].as_f64() < json["margin"]["after"].as_f64(), "{json}");
             continue;
         }
-        assert_eq!((code, json["status"].as_str()), (Some(1), Some("not_reproduced")), "{travel}: {text}");
+        assert_eq!(json["status"], "not_reproduced", "{travel}: {json}");
         assert!(json["saved"]["why"].as_str().unwrap().contains(why), "{}", json["saved"]);
-        assert!(text.contains(why) && !text.contains("an optimum"), "{text}");
-        let asks = text.contains("set `min_margin`");
-        assert_eq!(asks, margin.is_empty(), "advice for who has given a margin: {text}");
+        let message = json["message"].as_str().unwrap();
+        assert!(message.contains(why) && !message.contains("an optimum"), "{message}");
+        let asks = message.contains("set `min_margin`");
+        assert_eq!(asks, margin.is_empty(), "advice for who has given a margin: {message}");
     }
+}
+
+#[test]
+fn a_model_saved_in_another_folder_names_its_data_from_there() {
+    let bench = Bench::with(&[]);
+    std::fs::create_dir_all(bench.path("models/copies")).unwrap();
+    bench.put("models/pulled.toml", PULLED);
+    bench.put("models/travel.csv", &table(5.0));
+    let optimize = |to: &str| {
+        let output = bench.run(&["optimize", "models/pulled.toml", "--save", to]);
+        let texts = [output.stdout, output.stderr].map(|text| String::from_utf8(text).unwrap());
+        (output.status.code(), texts.concat())
+    };
+    // Above the model: `found.toml` was read and solved again, and has the optimum.
+    let (code, text) = optimize("found.toml");
+    assert!(code == Some(0) && text.contains("`found.toml` was read and solved again"), "{text}");
+    assert!(bench.text("found.toml").contains("file = \"models/travel.csv\", columns"), "{text}");
+    let change = ["whatif", "models/pulled.toml", "--set", "P_y=2", "--save"];
+    assert_eq!(bench.run(&[&change[..], &["moved.toml"]].concat()).status.code(), Some(0));
+    assert!(bench.text("moved.toml").contains("file = \"models/travel.csv\""));
+    // Below it, the table is out of reach: before the search, with a suggestion.
+    let (code, text) = optimize("models/copies/found.toml");
+    assert!(code == Some(2) && text.contains("HP0505") && !text.contains("objective"), "{text}");
+    assert!(
+        text.contains("it reads `travel.csv`, which is not there") && text.contains("or copy `travel.csv`"),
+        "{text}"
+    );
+    let output = bench.run(&[&change[..], &["models/copies/moved.toml"]].concat());
+    assert_eq!((output.status.code(), bench.list("models/copies")), (Some(2), vec![]));
+    // Another table of that name does not serve, a copy does.
+    bench.put("models/copies/travel.csv", &table(4.0));
+    let (code, text) = optimize("models/copies/found.toml");
+    assert!(code == Some(2) && text.contains("has other contents"), "{text}");
+    bench.put("models/copies/travel.csv", &table(5.0));
+    let (code, text) = optimize("models/copies/found.toml");
+    assert_eq!(code, Some(0), "{text}");
+    assert_eq!(bench.text("models/copies/found.toml").matches("file = \"travel.csv\"").count(), 1);
 }
 
 #[test]

@@ -178,6 +178,40 @@ fn designs_that_fail_keep_their_rows_and_their_reasons() {
     assert_eq!((&summary["method"], &summary["metrics"][0]["known"]), (&"listed".into(), &2.into()));
 }
 
+/// Driven by its slider from 0.3 mm to 0.1 mm before crank and rod are in line.
+const NEAR_DEAD_POINT: &str = r#"
+name = "slider-crank"
+units = { length = "mm", angle = "deg" }
+parameters.rod = { value = 300, unit = "length", design = true }
+hardpoints = { O = [0, 0, 0], A = [99.6249, 8.6547, 0], B = [399.5, 0, 0] }
+bodies = { crank = {}, slider = {} }
+joints.pivot = { type = "revolute", bodies = ["ground", "crank"], at = "O", axis = "z" }
+joints.slide = { type = "translational", bodies = ["ground", "slider"], at = "B", axis = "x" }
+joints.rod = { type = "distance", bodies = ["crank", "slider"], at = ["A", "B"], length = "rod" }
+drivers.motor = { joint = "slide", law = "0.2 + 0.2*t" }
+measures.angle = { type = "coordinate", joint = "pivot" }
+metrics.range = { of = "angle", take = "range" }
+time = { end = 1.0, steps = 10 }
+"#;
+
+#[test]
+fn failures_are_counted_by_the_reason_that_is_printed() {
+    let bench = Bench::with(&[]);
+    bench.put("near.toml", NEAR_DEAD_POINT);
+    // Too short for the start, for the end, and again.
+    bench.put("designs.csv", "rod [cm]\n30\n29.965\n29.98\n29.96\n29.985\n29.975\n");
+    let output = bench.run(&["sweep", "near.toml", "--designs", "designs.csv", "--json"]);
+    let summary: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let failures = summary["failures"].as_array().unwrap();
+    let count = |words: &str| {
+        let of = failures.iter().filter(|f| f["why"].as_str().unwrap().contains(words));
+        of.map(|f| f["count"].as_u64().unwrap()).collect::<Vec<_>>()
+    };
+    assert_eq!(failures.len(), 2, "{summary}");
+    assert_eq!(count("does not reach its start position"), [2], "{summary}");
+    assert_eq!(count("cannot move beyond"), [3], "{summary}");
+}
+
 #[test]
 fn factorials_and_sobol_indices_have_the_right_number_of_designs() {
     let bench = bench();

@@ -1,5 +1,8 @@
 //! `hardpoint synthesize`: files, exit codes, JSON.
 
+#[cfg(unix)]
+use std::{io::BufRead, process::Stdio};
+
 use crate::bench::Bench;
 
 const TASK: &str = "\
@@ -61,4 +64,34 @@ fn without_a_folder_nothing_is_written_and_codes_tell_the_outcome() {
     assert_eq!(document["diagnostics"][0]["code"], "HP0901");
     assert_eq!(document["diagnostics"][0]["line"], 3);
     assert_eq!(bench.run(&["synthesize", "nowhere.toml"]).status.code(), Some(3));
+}
+
+#[test]
+#[cfg(unix)]
+fn an_interrupted_synthesis_reports_how_far_it_came() {
+    let bench = Bench::with(&[]);
+    // Seconds of searches: points that no four-bar meets, of both types.
+    let points: Vec<String> = (0..60)
+        .map(|k| f64::from(k) * std::f64::consts::TAU / 60.0)
+        .map(|a| format!("[{:.3}, {:.3}]", 50.0 * a.cos() + 9.0 * (3.0 * a).cos(), 30.0 * a.sin()))
+        .collect();
+    bench.put(
+        "long.toml",
+        &format!(
+            "name = \"long\"\nunits = {{ length = \"mm\", angle = \"deg\" }}\nclosed = true\npoints = [{}]\n",
+            points.join(", ")
+        ),
+    );
+    let mut command = bench.command(&["synthesize", "long.toml", "-o", "out"]);
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut out = std::io::BufReader::new(child.stdout.take().unwrap());
+    let mut text = String::new();
+    out.read_line(&mut text).unwrap();
+    assert!(text.contains("long"), "{text}");
+    let interrupted = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    assert!(interrupted.unwrap().success());
+    std::io::Read::read_to_string(&mut out, &mut text).unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(130), "{text}");
+    assert!(text.contains("interrupted"), "{text}");
+    assert!(!bench.list("out").contains(&"summary.json".to_owned()));
 }

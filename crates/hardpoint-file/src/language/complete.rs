@@ -8,7 +8,7 @@ use crate::values::{Key, Need, Shape, alternatives, key_list, noun};
 
 use super::Document;
 use super::names::{offered, words_of};
-use super::syntax::{self, Cursor, CursorPlace, Node};
+use super::syntax::{self, Cursor, CursorPlace, Member, Node};
 
 /// A completion of the text at a position.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -181,11 +181,23 @@ impl Document {
                 "forces" => "force".to_owned(),
                 _ => noun(kind).to_owned(),
             };
-            for name in self.index.names_in(section) {
+            let is_one = |name: &String| match (kind, section) {
+                ("a joint", "hardpoints") => self.bodies_on(name).len() > 1,
+                ("a point", "hardpoints") => matches!(self.bodies_on(name)[..], [body] if body != "ground"),
+                _ => true,
+            };
+            for name in self.index.names_in(section).into_iter().filter(is_one) {
                 names.extend(endings.iter().map(|ending| (format!("{name}{ending}"), detail.clone())));
             }
         }
         names
+    }
+
+    /// Bodies of a planar model that list a hardpoint.
+    fn bodies_on(&self, hardpoint: &str) -> Vec<&str> {
+        let bodies = self.root.get("bodies").map_or(&[][..], Node::members);
+        let has = |body: &&Member| body.value.elements().iter().any(|n| n.text() == Some(hardpoint));
+        bodies.iter().filter(has).map(|body| body.name.as_str()).collect()
     }
 
     /// Names for the word that was begun in an expression.

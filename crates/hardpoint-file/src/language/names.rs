@@ -85,7 +85,8 @@ fn sections_of(kind: &str) -> &'static [(&'static str, bool)] {
         "a coupler" => &[("couplers", false)],
         "a driver" => &[("drivers", false), ("forces", false)],
         "a design variable" => &[("design", false), ("parameters", false)],
-        "a point" => &[("points", false)],
+        // A hardpoint on a single body of a planar model is a point of that body.
+        "a point" => &[("points", false), ("hardpoints", false)],
         "a wheel" => &[("wheels", false)],
         "an axle" => &[("axles", false)],
         "a shape" => &[("shapes", false), ("bodies", false)],
@@ -189,7 +190,41 @@ impl Index {
                 }
             }
         }
+        if root.get("planar").is_some() {
+            index.split_hinges();
+        }
         index
+    }
+
+    /// Splits names of hinges that planar models make of a hardpoint and a body, such as `A_rocker`, into both.
+    fn split_hinges(&mut self) {
+        let split = |o: &Occurrence| {
+            let may_be = match o.of {
+                NameUse::Key(kind) | NameUse::Value(kind) => {
+                    sections_of(kind).iter().any(|(section, _)| *section == "joints")
+                }
+                NameUse::Declaration(_) | NameUse::Expression(_) => false,
+            };
+            if !may_be || !o.is_plain || self.resolve(&o.name, o.of).is_some() {
+                return None;
+            }
+            o.name.match_indices('_').find_map(|(at, _)| {
+                let body = at + 1..o.name.len();
+                self.entry("hardpoints", &o.name[..at]).and(self.entry("bodies", &o.name[body.clone()]))?;
+                let part = |range: Range<usize>, kind| Occurrence {
+                    at: o.at.start + range.start..o.at.start + range.end,
+                    is_plain: true,
+                    name: o.name[range].to_owned(),
+                    of: NameUse::Value(kind),
+                };
+                Some([part(0..at, "a hardpoint"), part(body, "a body")])
+            })
+        };
+        let names = self.names.iter().flat_map(|o| match split(o) {
+            Some(parts) => parts.to_vec(),
+            None => vec![o.clone()],
+        });
+        self.names = names.collect();
     }
 
     fn describe(&mut self, member: &Member, of: Described) {
@@ -375,10 +410,15 @@ impl Index {
 
 /// Variables of an entry of `design` with other names than its own.
 fn variables_of(section: &str, entry: &Member) -> Vec<String> {
-    let is_point =
-        entry.value.get("along").and_then(Node::text) == Some("xyz") || entry.value.get("play").is_some();
-    let axes = if section == "design" && is_point { &["x", "y", "z"][..] } else { &[] };
-    axes.iter().map(|axis| format!("{}_{axis}", entry.name)).collect()
+    let along = entry.value.get("along").and_then(Node::text).unwrap_or_default();
+    let axes = match along {
+        _ if section != "design" => "",
+        // In planar models, a plane has an axis for each of its letters.
+        "xyz" | "xy" | "yz" | "zx" | "xz" => along,
+        _ if entry.value.get("play").is_some() => "xyz",
+        _ => "",
+    };
+    axes.chars().map(|axis| format!("{}_{axis}", entry.name)).collect()
 }
 
 /// True if a key of such a table names an entry. Goals and limits have names of their own if they name their metric.

@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use hardpoint::draft::{CaseDraft, FormulaDraft, FormulaOf, GridDraft, OtherDrivers, Section};
+use hardpoint::draft::{CaseDraft, Draft, FormulaDraft, FormulaOf, GridDraft, OtherDrivers, Section};
 use hardpoint::joint::Quantity;
 use hardpoint::law::Law;
 
@@ -86,9 +86,9 @@ pub(super) fn cases(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
             raw.draft.grids.push(GridDraft { name: entry.0, sweeps: sweeps.unwrap_or_default() });
             continue;
         }
-        let formulas = &mut raw.draft.formulas;
-        let laws = r
-            .given(&fields, "laws", |r, f| case_laws(r, &entry.0, &fields, f, &mut place, &driven, formulas));
+        let draft = &mut raw.draft;
+        let laws =
+            r.given(&fields, "laws", |r, f| case_laws(r, &entry.0, &fields, f, &mut place, &driven, draft));
         let rest = r.word_of(&fields, "other_drivers").map(|k| RESTS[k]);
         let mut times = r.given(&fields, "time", |r, f| {
             times::times(r, &format!("`time` of {}", fields.what), &fields.subject("time"), f)
@@ -237,7 +237,7 @@ fn case_laws(
     f: Field<'_>,
     place: &mut EntryPlace,
     driven: &HashMap<String, Quantity>,
-    formulas: &mut Vec<FormulaDraft>,
+    draft: &mut Draft,
 ) -> Option<Vec<(String, Law)>> {
     let subject = fields.subject("laws");
     let table = r.table_of_names(f.value, &subject, "a table of drivers' names and laws")?;
@@ -248,14 +248,19 @@ fn case_laws(
             complete = false;
             continue;
         };
-        let of = format!("driver `{}` in {}", shown(&driver), fields.what);
+        let is_force = !driven.contains_key(&driver) && draft.forces.iter().any(|f| f.name == driver);
+        let of = if is_force { "force" } else { "driver" };
+        let of = format!("{of} `{}` in {}", shown(&driver), fields.what);
         let subject =
             Subject { name: format!("the law of {of}"), example: "for example `\"30*sin(2*pi*t)\"`".into() };
-        let law = law::law_in(r, &of, &subject, value);
+        let mut law = law::law_in(r, &of, &subject, value);
+        if is_force {
+            law = law::of_force(r, &subject, value).and(law);
+        }
         let quantity = driven.get(&driver).copied().unwrap_or(Quantity::Number);
         for (parameter, expression) in r.law_formulas.drain(..) {
             let of = FormulaOf::CaseLaw(case.to_owned(), driver.clone(), parameter);
-            formulas.push(FormulaDraft { of, expression });
+            draft.formulas.push(FormulaDraft { of, expression });
         }
         complete &= law.is_some();
         if let Some(law) = law {

@@ -1,12 +1,15 @@
-//! Two columns of a CSV file: times and values, or another abscissa and values.
+//! Two columns of a CSV file: times and values, or another abscissa and values. Titles of columns, with their units.
 
 use std::path::Path;
 
+use hardpoint::model::Dimension;
 use toml::de::DeValue;
 
 use crate::values::{
     DataError, Field, Fields, Reader, Shape, Subject, Table, Value, Wanted, closest, shown, text_from,
 };
+use hardpoint_table::csv::original;
+use hardpoint_table::{AngleUnit, LengthUnit, Units};
 
 /// Maximum number of rows.
 const MOST_ROWS: usize = 1_000_000;
@@ -315,6 +318,73 @@ fn found(
         return Err(DataError::content(message, &format!("name two columns, the {x} first")));
     }
     Ok(places)
+}
+
+/// Title of a column.
+#[derive(Clone, Debug)]
+pub(crate) struct Title {
+    /// Name, without the unit.
+    pub name: String,
+    /// Unit in brackets behind the name.
+    pub unit: Option<String>,
+}
+
+impl Title {
+    /// Splits the title in a cell into name and unit: `toe [deg]`.
+    pub fn of(cell: &str) -> Self {
+        let title = original(unquoted(cell));
+        let split = title.split_once(" [").and_then(|(name, unit)| Some((name, unit.strip_suffix(']')?)));
+        match split {
+            Some((name, unit)) => Self { name: name.to_owned(), unit: unit_in(unit) },
+            None => Self { name: title.to_owned(), unit: None },
+        }
+    }
+
+    /// Units in which the numbers below are read: those of the model file, or the unit of the title in place of its own
+    /// if both are lengths or both are angles. `own` is the unit of the model file, `1` of a plain number.
+    ///
+    /// # Errors
+    /// An error with this code if the unit is another one.
+    pub fn units(
+        &self,
+        units: Units,
+        of: Dimension,
+        own: &str,
+        code: &'static str,
+    ) -> Result<Units, DataError> {
+        let Some(written) = self.unit.as_deref() else { return Ok(units) };
+        let length = LengthUnit::ALL.into_iter().find(|unit| unit.symbol() == written);
+        let angle = AngleUnit::ALL.into_iter().find(|unit| unit.symbol() == written);
+        let (name, written) = (shown(&self.name), shown(written));
+        let symbols = |of: &[&str]| format!("give its values in one of {}", of.join(", "));
+        let (message, help) = match (of, length, angle) {
+            (Dimension::LENGTH, Some(length), _) => return Ok(Units { length, ..units }),
+            (Dimension::ANGLE, _, Some(angle)) => return Ok(Units { angle, ..units }),
+            _ if written == own => return Ok(units),
+            (Dimension::LENGTH, ..) => (
+                format!("`{name}` is in `{written}`, and it is a length"),
+                symbols(&LengthUnit::ALL.map(LengthUnit::symbol)),
+            ),
+            (Dimension::ANGLE, ..) => (
+                format!("`{name}` is in `{written}`, and it is an angle"),
+                symbols(&AngleUnit::ALL.map(AngleUnit::symbol)),
+            ),
+            _ if own == "1" => (
+                format!("`{name}` is in `{written}`, and it is a plain number"),
+                "remove the unit of the column".to_owned(),
+            ),
+            _ => (
+                format!("`{name}` is in `{written}`, and the model file has {own}"),
+                format!("give the values in {own}"),
+            ),
+        };
+        Err(DataError::new(code, message, help))
+    }
+}
+
+/// Unit in a cell or in the brackets of a title; plain numbers have none.
+pub(super) fn unit_in(text: &str) -> Option<String> {
+    Some(text.trim()).filter(|unit| !matches!(*unit, "" | "-")).map(str::to_owned)
 }
 
 /// Removes the quotes of a field that begins with a blank.

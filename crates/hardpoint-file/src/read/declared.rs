@@ -273,11 +273,5 @@ fn number_of(
 /// Law that scales a force over time.
 fn factor_law(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>) -> Option<Law> {
     let law = law::law(r, fields, f);
-    if !r.law_formulas.is_empty() {
-        r.law_formulas.clear();
-        r.senseless(f.value.span(), "the law of a force has a parameter that an expression gives").help =
-            Some("write numbers in the law; the force that it multiplies may depend on parameters".into());
-        return None;
-    }
-    law
+    law::of_force(r, &fields.subject(f.key), f.value).and(law)
 }

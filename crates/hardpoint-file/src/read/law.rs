@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use hardpoint::draft::ConstantError;
 use hardpoint::expression::Expression;
 use hardpoint::joint::Quantity;
 use hardpoint::law::{self, Law, LawError, SplineDegree, SplineEndRates, SplineEnds};
@@ -225,6 +226,27 @@ fn law_text(r: &mut Reader<'_>, of: &str, value: &Value<'_>, parameters: &[(&str
             None
         }
     }
+}
+
+/// Makes the law that was read last one of a force, which is the same in every design: `None` if it is not. HP0230: a
+/// parameter in it that the design changes.
+pub(super) fn of_force(r: &mut Reader<'_>, subject: &Subject, value: &Value<'_>) -> Option<()> {
+    let mut is_same = Some(());
+    for (_, expression) in std::mem::take(&mut r.law_formulas) {
+        let Err(why) = r.nominal.constant(&expression) else { continue };
+        is_same = None;
+        let ConstantError::Follows(name, what) = why else {
+            r.no_constant(value, subject, why);
+            continue;
+        };
+        let message = format!("{} cannot follow parameter `{name}`", subject.name);
+        let d = r.report("HP0230", value.span(), message);
+        d.notes.push(format!("{what} changes `{name}`, and the law of a force is the same in every design"));
+        d.help = Some(format!(
+            "let what the law multiplies depend on it, like `force = \"50*{name}\"`; or write `design = false` for the parameter"
+        ));
+    }
+    is_same
 }
 
 /// HP0114: the argument of a trigonometric function looks like degrees, but it is in rad.

@@ -6,9 +6,12 @@ use hardpoint::measure::outputs;
 use hardpoint::model::{Dimension, DriverId, ElementId, Measurements, Reading};
 
 use crate::values::{DataError, Diagnostics, Source, closest, shown};
+use hardpoint_table::Units;
+use hardpoint_table::figures::unit as unit_of;
 
+use super::data::Title;
 use super::model_file::ModelFile;
-use super::readings::{Readings, readings_at};
+use super::readings::{Readings, is_left_out, readings_at};
 
 /// Contents of a measurement file.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,6 +35,11 @@ enum Holds {
     Output(usize),
     /// Standard deviations of an output's readings.
     Sigma(usize),
+}
+
+/// Index of the column that holds something.
+fn place_of(columns: &[Option<(Holds, Units)>], wanted: Holds) -> Option<usize> {
+    columns.iter().position(|column| column.is_some_and(|(holds, _)| holds == wanted))
 }
 
 impl ModelFile {
@@ -59,7 +67,7 @@ impl ModelFile {
         let holds = self.columns(table, file)?;
         let given = self.sigmas_given(sigmas)?;
         let drivers = &self.model.drivers;
-        let has = |wanted: Holds| holds.iter().position(|h| *h == Some(wanted));
+        let has = |wanted: Holds| place_of(&holds, wanted);
         let as_drawn =
             (0..drivers.len()).filter(|d| has(Holds::Driver(*d)).is_none()).map(DriverId).collect();
         let mut found = MeasuredData { measurements: Measurements::default(), lines: Vec::new(), as_drawn };
@@ -67,22 +75,27 @@ impl ModelFile {
         let outputs = outputs(&self.model);
         for (line, cells) in &table.rows {
             let here = |column: usize| {
-                format!("`{file}`, line {line}, column {} (`{}`)", column + 1, shown(&table.names[column].0))
+                format!(
+                    "`{file}`, line {line}, column {} (`{}`)",
+                    column + 1,
+                    shown(&table.titles[column].name)
+                )
             };
             let mut positions = drawn.clone();
             let mut forces = Vec::new();
             let posture = found.lines.len();
-            for (column, (holds, cell)) in holds.iter().zip(cells).enumerate() {
-                match (holds, cell) {
-                    (Some(Holds::Driver(d)), Some(x)) => {
-                        positions[*d] = self.units.to_si(self.model.driven(&drivers[*d]).quantity, *x);
+            for (column, (held, cell)) in holds.iter().zip(cells).enumerate() {
+                let Some((held, units)) = *held else { continue };
+                match (held, cell) {
+                    (Holds::Driver(d), Some(x)) => {
+                        positions[d] = units.to_si(self.model.driven(&drivers[d]).quantity, *x);
                     }
-                    (Some(Holds::Force(e)), Some(x)) => forces.push((ElementId(*e), *x)),
-                    (Some(Holds::Driver(_) | Holds::Force(_)), None) => {
+                    (Holds::Force(e), Some(x)) => forces.push((ElementId(e), *x)),
+                    (Holds::Driver(_) | Holds::Force(_), None) => {
                         let help = "give the value of every driver and force of the first line";
                         return Err(DataError::new("HP0112", format!("{} is missing", here(column)), help));
                     }
-                    (Some(Holds::Sigma(_)), Some(x)) if !(*x > 0.0) => {
+                    (Holds::Sigma(_), Some(x)) if !(*x > 0.0) => {
                         let help = "give a number above zero, or leave the cell empty";
                         return Err(DataError::new(
                             "HP0249",
@@ -91,18 +104,22 @@ impl ModelFile {
                         )
                         .note("it is the standard deviation of a reading"));
                     }
-                    (Some(Holds::Output(m)), Some(x)) => {
-                        let in_si = |x: f64| x / self.units.from_si(outputs[*m].dimension, 1.0);
-                        let own = has(Holds::Sigma(*m)).and_then(|column| cells[column]);
-                        let (output, value) = (*m, in_si(*x));
-                        let sigma = own.or(given[*m]).map(in_si);
-                        found.measurements.readings.push(Reading { posture, output, value, sigma });
+                    (Holds::Output(m), Some(x)) => {
+                        let in_si = |units: Units, x: f64| x / units.from_si(outputs[m].dimension, 1.0);
+                        let own = has(Holds::Sigma(m)).and_then(|column| {
+                            // Standard deviations without a unit of their own have that of their readings.
+                            let own = table.titles[column].unit.as_ref().and(holds[column]);
+                            Some(in_si(own.map_or(units, |(_, own)| own), cells[column]?))
+                        });
+                        let sigma = own.or(given[m].map(|sigma| in_si(self.units, sigma)));
+                        let reading = Reading { posture, output: m, value: in_si(units, *x), sigma };
+                        found.measurements.readings.push(reading);
                     }
-                    _ => {}
+                    (Holds::Sigma(_), _) | (Holds::Output(_), None) => {}
                 }
             }
             found.measurements.postures.push(positions);
-            if holds.iter().any(|h| matches!(h, Some(Holds::Force(_)))) {
+            if holds.iter().any(|h| matches!(h, Some((Holds::Force(_), _)))) {
                 found.measurements.forces.push(forces);
             }
             found.lines.push(*line);
@@ -115,12 +132,13 @@ impl ModelFile {
         Ok(found)
     }
 
-    /// Contents of every column; `None` for columns that begin with `#`.
-    fn columns(&self, table: &Readings, file: &str) -> Result<Vec<Option<Holds>>, DataError> {
-        let mut found: Vec<Option<Holds>> = Vec::new();
-        for (column, (name, unit)) in table.names.iter().enumerate() {
+    /// Contents of every column, and the units of its numbers; `None` for columns that are left out.
+    fn columns(&self, table: &Readings, file: &str) -> Result<Vec<Option<(Holds, Units)>>, DataError> {
+        let mut found = Vec::new();
+        for (column, title) in table.titles.iter().enumerate() {
+            let Title { name, unit } = title;
             let note = format!("it is the title of column {} of `{file}`", column + 1);
-            if name.starts_with('#') {
+            if is_left_out(title) {
                 found.push(None);
                 continue;
             }
@@ -137,29 +155,26 @@ impl ModelFile {
                 );
                 return Err(DataError::new("HP0248", message, help).note(note));
             }
-            if let Some((unit, expected)) = unit.as_deref().zip(self.unit_of(holds)).filter(|(a, b)| a != b) {
-                let message =
-                    format!("`{}` is in `{}`, and the model file has {expected}", shown(name), shown(unit));
-                let help = format!("write it in {expected}, or change `units` of the model file");
-                return Err(DataError::new("HP0248", message, help).note(note));
-            }
-            if found.contains(&Some(holds)) {
+            let of = self.dimension_of(holds);
+            let units = title.units(self.units, of, &unit_of(self.units, of), "HP0248");
+            let units = units.map_err(|error| error.note(note))?;
+            if place_of(&found, holds).is_some() {
                 let message = format!("`{}` is the title of two columns of `{file}`", shown(name));
                 return Err(DataError::new("HP0248", message, "remove one of the two"));
             }
-            found.push(Some(holds));
+            found.push(Some((holds, units)));
         }
-        if !found.iter().any(|h| matches!(h, Some(Holds::Output(_)))) {
+        if !found.iter().any(|h| matches!(h, Some((Holds::Output(_), _)))) {
             let message = format!("`{file}` has no column of readings");
             let help =
                 "add a column that is headed by a measure, or by a point's component, like `wheel_centre.z`";
             return Err(DataError::new("HP0248", message, help));
         }
         for (column, holds) in found.iter().enumerate() {
-            if let Some(Holds::Sigma(m)) = holds
-                && !found.contains(&Some(Holds::Output(*m)))
+            if let Some((Holds::Sigma(m), _)) = holds
+                && place_of(&found, Holds::Output(*m)).is_none()
             {
-                let message = format!("`{}` has no column of readings", shown(&table.names[column].0));
+                let message = format!("`{}` has no column of readings", shown(&table.titles[column].name));
                 let help = "add the column of its readings, or remove this one";
                 return Err(DataError::new("HP0248", message, help)
                     .note(format!("it is the title of column {}", column + 1)));
@@ -192,17 +207,12 @@ impl ModelFile {
         })
     }
 
-    /// Unit of a length or an angle.
-    fn unit_of(&self, holds: Holds) -> Option<&'static str> {
-        let dimension = match holds {
+    /// Dimension of the numbers of a column.
+    fn dimension_of(&self, holds: Holds) -> Dimension {
+        match holds {
             Holds::Driver(d) => self.model.driven(&self.model.drivers[d]).quantity.into(),
-            Holds::Force(_) => return None,
+            Holds::Force(_) => Dimension::NUMBER,
             Holds::Output(m) | Holds::Sigma(m) => outputs(&self.model)[m].dimension,
-        };
-        match dimension {
-            Dimension::LENGTH => Some(self.units.length.symbol()),
-            Dimension::ANGLE => Some(self.units.angle.symbol()),
-            _ => None,
         }
     }
 

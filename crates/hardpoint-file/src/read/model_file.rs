@@ -5,14 +5,16 @@ use std::ops::Range;
 use std::path::Path;
 
 use hardpoint::draft::{Section, some_of};
-use hardpoint::model::{BodyId, CaseId, LimitTarget, Model, SweepRange, SweepSettings, VariableId};
+use hardpoint::joint::Quantity;
+use hardpoint::model::element::ActsOn;
+use hardpoint::model::{BodyId, CaseId, Element, LimitTarget, Model, SweepRange, SweepSettings, VariableId};
 
 use crate::compose::{Origins, Plane, with_origin};
 use crate::values::{DataError, Diagnostic, Diagnostics, Places, Severity, Source, Texts, closest, shown};
 use hardpoint_table::Units;
 
 use super::drawing::Appearance;
-use super::sweep;
+use super::sweep::{self, DesignList};
 
 /// Number of bodies without mass that are named.
 const MOST_NAMES: usize = 8;
@@ -61,11 +63,15 @@ impl ModelFile {
 
     /// Change, in SI, that gives a variable a value in the file's units; exactly 0 for its nominal value.
     pub fn change_to(&self, variable: VariableId, value: f64) -> f64 {
-        if value == self.value_of(variable, 0.0) {
+        self.change_in(self.units, variable, value)
+    }
+
+    /// Change, in SI, that gives a variable a value in these units; exactly 0 for its nominal value in the file's.
+    fn change_in(&self, units: Units, variable: VariableId, value: f64) -> f64 {
+        if units == self.units && value == self.value_of(variable, 0.0) {
             return 0.0;
         }
-        let quantity = self.model.variables[variable.0].quantity;
-        self.units.to_si(quantity, value) - self.model.nominal_value(variable)
+        units.to_si(self.model.variables[variable.0].quantity, value) - self.model.nominal_value(variable)
     }
 
     /// Name of the file, as given.
@@ -102,25 +108,33 @@ impl ModelFile {
         let name = path.display().to_string();
         let source = Source::new(&name, "");
         let rejected = |e: DataError| Diagnostics::new(source.clone(), vec![e.diagnostic(&source, None)]);
-        let (names, rows) = sweep::list_at(path).map_err(rejected)?;
-        let mut variables = Vec::new();
-        for (column, wanted) in names.iter().enumerate() {
+        let DesignList { titles, rows } = sweep::list_at(path).map_err(rejected)?;
+        let (mut variables, mut units) = (Vec::new(), Vec::new());
+        for (column, title) in titles.iter().enumerate() {
+            let wanted = &title.name;
+            let note = || format!("it is the title of column {} of `{}`", column + 1, shown(&name));
             let known = self.model.variables.iter().position(|v| v.name == *wanted);
             let Some(k) = known else {
                 let all = self.model.variables.iter().map(|v| v.name.as_str());
                 let help = closest(wanted, all).map(|c| format!("did you mean `{c}`?"));
                 let message = format!("there is no design variable named `{}`", shown(wanted));
-                let note = format!("it is the title of column {} of `{}`", column + 1, shown(&name));
-                return Err(rejected(DataError { help, ..DataError::new("HP0247", message, "").note(note) }));
+                let error = DataError { help, ..DataError::new(sweep::LIST_CODE, message, "") };
+                return Err(rejected(error.note(note())));
             };
-            if variables.contains(&VariableId(k)) {
+            let variable = VariableId(k);
+            if variables.contains(&variable) {
                 let message =
                     format!("`{}` is the title of two columns of `{}`", shown(wanted), shown(&name));
-                return Err(rejected(DataError::new("HP0247", message, "remove one of the two")));
+                return Err(rejected(DataError::new(sweep::LIST_CODE, message, "remove one of the two")));
             }
-            variables.push(VariableId(k));
+            let own = sweep::units_of_column(&self.model, self.units, title, variable);
+            units.push(own.map_err(|error| rejected(error.note(note())))?);
+            variables.push(variable);
         }
-        let in_si = |row: &Vec<f64>| variables.iter().zip(row).map(|(v, x)| self.change_to(*v, *x)).collect();
+        let in_si = |row: &Vec<f64>| {
+            let columns = variables.iter().zip(&units).zip(row);
+            columns.map(|((variable, units), x)| self.change_in(*units, *variable, *x)).collect()
+        };
         let rows: Vec<Vec<f64>> = rows.iter().map(in_si).collect();
         Ok((SweepSettings::spanned(&variables, &rows), rows))
     }
@@ -200,8 +214,38 @@ impl ModelFile {
         )
     }
 
+    /// HP0256: warnings about bushings whose two points differ in the nominal design.
+    pub(super) fn open_bushings(&self) -> Vec<Diagnostic> {
+        let model = &self.model;
+        // The elements are the masses, then the forces.
+        let forces = model.elements.iter().filter(|e| !e.kind.has_mass());
+        let of = |(k, element): (usize, &Element)| {
+            let acts_on = element.kind.force(model).map(|force| force.acts_on);
+            let Some(ActsOn::Points(ends)) = acts_on else { return None };
+            let [from, to] = ends.map(|p| model.hardpoints[model.points[p.0].at.0].position);
+            let apart = (to - from).norm();
+            if !(apart > SAME_PLACE * model.size()) {
+                return None;
+            }
+            let apart = self.units.from_si(Quantity::Length, apart);
+            let apart = hardpoint_table::figures::with_unit(apart, self.units.length.symbol());
+            let name = shown(&element.name);
+            let message = format!("the two points of bushing `{name}` are {apart} apart");
+            let d = self.diagnostic(Severity::Warning, "HP0256", message, Some((Section::Forces, k)));
+            Some(
+                d.note("it is under stress in the design configuration: its deflection is zero where they coincide")
+                    .help("give `to` the place of `from`; add `preload_x` and so on if it is under stress there"),
+            )
+        };
+        forces.enumerate().filter_map(of).collect()
+    }
+
     /// Renders a diagnostic of this file for a terminal; with `color`, with ANSI escapes.
     pub fn render(&self, diagnostic: &Diagnostic, color: bool) -> String {
         self.source.render(diagnostic, color)
     }
 }
+
+/// Distance between the two points of a bushing, in sizes of the mechanism, up to which they are one place: typed
+/// coordinates agree to about this.
+const SAME_PLACE: f64 = 1e-6;

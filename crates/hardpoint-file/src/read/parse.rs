@@ -17,6 +17,7 @@ use crate::values::{
 
 use super::model::{MODEL, model};
 use super::model_file::ModelFile;
+use super::sweep;
 
 /// Maximum number of syntax errors that are shown: later ones usually follow from the first.
 const SYNTAX_ERRORS: usize = 5;
@@ -204,8 +205,13 @@ pub(crate) fn parsed(folder: Folder<'_>, text: &str, file_name: &str) -> Result<
     let (units, texts) = (reader.units, reader.texts);
     let remarks = deduplicated(reader.remarks, &origins);
     let mut found = reader.found;
+    let list = raw.draft.sweeping.as_ref().and_then(|sweeping| sweeping.designs.as_ref());
     let model = match Model::from_draft(&raw.draft) {
-        Ok(model) => Some(model),
+        Ok(model) => {
+            let wrong = list.and_then(|list| sweep::wrong_unit(&model, units, list, &raw.listed));
+            found.extend(wrong.map(|fault| shown_fault(&source, &raw.places, fault)));
+            Some(model)
+        }
         Err(faults) => {
             found.extend(faults.into_iter().map(|f| shown_fault(&source, &raw.places, f)));
             None
@@ -230,6 +236,7 @@ pub(crate) fn parsed(folder: Folder<'_>, text: &str, file_name: &str) -> Result<
                 places,
             };
             file.remarks.extend(file.weightless());
+            file.remarks.extend(file.open_bushings());
             file.remarks = in_order(file.remarks);
             Ok(file)
         }

@@ -3,17 +3,16 @@
 use std::path::Path;
 
 use crate::values::{DataError, shown};
-use hardpoint_table::csv::original;
 
-use super::data::{delimiter, no_csv, number, records_of, text_at, unquoted};
-use super::sweep::bare;
+use super::data::{Title, delimiter, no_csv, number, records_of, text_at, unit_in, unquoted};
 
 /// Maximum number of rows: each is a posture that is solved separately.
 const MOST_ROWS: usize = 100_000;
 
-/// Column names and their units from the first line, and the numbers below; empty cells are `None`.
+/// Titles of columns from the first line, and the numbers below; empty cells, and those of columns that are left out,
+/// are `None`.
 pub(crate) struct Readings {
-    pub names: Vec<(String, Option<String>)>,
+    pub titles: Vec<Title>,
     /// With the line of each.
     pub rows: Vec<(u64, Vec<Option<f64>>)>,
 }
@@ -30,11 +29,10 @@ pub(crate) fn readings_at(path: &Path) -> Result<Readings, DataError> {
     if !reader.read_record(&mut record).map_err(no_csv)? {
         return Err(DataError::content(format!("`{name}` is empty"), write));
     }
-    let mut names: Vec<(String, Option<String>)> =
-        record.iter().map(|field| named(original(unquoted(field)))).collect();
-    if names.iter().all(|(n, _)| n.parse::<f64>().is_ok()) {
+    let mut titles: Vec<Title> = record.iter().map(Title::of).collect();
+    if titles.iter().all(|title| title.name.parse::<f64>().is_ok()) {
         let line = record.position().map_or(1, csv::Position::line);
-        if let Some(above) = headed(text, names.len()) {
+        if let Some(above) = headed(text, titles.len()) {
             let message = format!(
                 "`{name}`, line {above} begins with `#`: the names of the columns are a comment there"
             );
@@ -48,18 +46,17 @@ pub(crate) fn readings_at(path: &Path) -> Result<Readings, DataError> {
     let mut is_first = true;
     while reader.read_record(&mut record).map_err(no_csv)? {
         let line = record.position().map_or(0, csv::Position::line);
-        if record.len() != names.len() {
+        if record.len() != titles.len() {
             let cells = if record.len() == 1 { "cell" } else { "cells" };
             let message =
-                format!("`{name}`, line {line} has {} {cells} for {} columns", record.len(), names.len());
+                format!("`{name}`, line {line} has {} {cells} for {} columns", record.len(), titles.len());
             let help = "give one cell for each name of the first line; that of a missing reading is empty";
             return Err(DataError::content(message, help));
         }
         // Units may be on a line of their own, below the names.
-        if std::mem::take(&mut is_first) && is_units(&record) {
-            for (cell, (title, unit)) in record.iter().zip(&mut names) {
-                let below = unquoted(cell).trim_matches(['[', ']', '(', ')', ' ']);
-                let below = Some(below).filter(|u| u.chars().any(char::is_alphanumeric)).map(str::to_owned);
+        if std::mem::take(&mut is_first) && is_units(&record, &titles) {
+            for (cell, Title { name: title, unit }) in record.iter().zip(&mut titles) {
+                let below = unit_in(unquoted(cell).trim_matches(['[', ']', '(', ')', ' ']));
                 if let (Some(own), Some(below)) = (&unit, &below)
                     && own != below
                 {
@@ -75,12 +72,12 @@ pub(crate) fn readings_at(path: &Path) -> Result<Readings, DataError> {
             }
             continue;
         }
-        let cell = |(k, (title, _)): (usize, &(String, Option<String>))| {
-            let text = record.get(k).map(unquoted).filter(|text| !text.is_empty());
-            let here = format!("`{name}`, line {line}, column {} (`{}`)", k + 1, shown(title));
+        let cell = |(k, title): (usize, &Title)| {
+            let text = record.get(k).map(unquoted).filter(|text| !text.is_empty() && !is_left_out(title));
+            let here = format!("`{name}`, line {line}, column {} (`{}`)", k + 1, shown(&title.name));
             text.map(|text| number(Some(text), &here, "")).transpose()
         };
-        rows.push((line, names.iter().enumerate().map(cell).collect::<Result<_, _>>()?));
+        rows.push((line, titles.iter().enumerate().map(cell).collect::<Result<_, _>>()?));
         if rows.len() > MOST_ROWS {
             let message = format!("`{name}` has more than {MOST_ROWS} rows");
             return Err(DataError::content(message, "keep those that were measured in different postures"));
@@ -89,7 +86,7 @@ pub(crate) fn readings_at(path: &Path) -> Result<Readings, DataError> {
     if rows.is_empty() {
         return Err(DataError::content(format!("`{name}` has no readings"), write));
     }
-    Ok(Readings { names, rows })
+    Ok(Readings { titles, rows })
 }
 
 /// Comment line (`#`) above the first row with the same number of cells: it is a header.
@@ -100,16 +97,15 @@ fn headed(text: &str, columns: usize) -> Option<usize> {
     above.filter(|(_, l)| heads(l)).last().map(|(k, _)| k + 1)
 }
 
-/// Returns whether a line has at least one word and no number.
-fn is_units(record: &csv::StringRecord) -> bool {
-    let mut cells = record.iter().map(unquoted);
-    cells.clone().any(|cell| cell.chars().any(char::is_alphabetic))
-        && cells.all(|cell| cell.parse::<f64>().is_err() && !cell.starts_with(|c: char| c.is_ascii_digit()))
+/// True if the name of a column begins with `#`: it may hold anything, and is ignored.
+pub(super) fn is_left_out(title: &Title) -> bool {
+    title.name.starts_with('#')
 }
 
-/// Splits a column title into name and unit: `toe [deg]`.
-fn named(title: &str) -> (String, Option<String>) {
-    let name = bare(title);
-    let unit = title[name.len()..].trim().strip_prefix('[').and_then(|u| u.strip_suffix(']'));
-    (name.to_owned(), unit.map(str::to_owned))
+/// Returns whether a line has at least one word and no number.
+fn is_units(record: &csv::StringRecord, titles: &[Title]) -> bool {
+    let read = record.iter().zip(titles).filter(|(_, title)| !is_left_out(title));
+    let mut cells = read.map(|(cell, _)| unquoted(cell));
+    cells.clone().any(|cell| cell.chars().any(char::is_alphabetic))
+        && cells.all(|cell| cell.parse::<f64>().is_err() && !cell.starts_with(|c: char| c.is_ascii_digit()))
 }

@@ -4,6 +4,7 @@ use hardpoint::draft::{
     BetweenDraft, BodyShapeDraft, BodyShapeKindDraft, ClearanceDraft, EndsDraft, FrameDraft, LocationDraft,
     MeasureDraft, MeasureKindDraft, MetricDraft, MinimumDraft, NumberDraft, PointRef, Section,
 };
+use hardpoint::expression::Expression;
 use hardpoint::model::{ElementUnit, Reduction};
 use hardpoint::space::{Pose, Vec3};
 
@@ -168,7 +169,8 @@ static FORMS: &[(Table, Read)] = &[
             must "box": Shape::exactly(3, &LENGTH), "[40, 20, 90]";
             /// The body's name.
             must "body": BODY, "\"frame\"";
-            /// The centre and axes in the design configuration. Default: the global origin and axes.
+            /// The centre and axes in the design configuration; the centre follows a hardpoint that is named. Default:
+            /// the global origin and axes.
             may "frame": Shape::Kinds(&bodies::FRAME), "{ position = [0, 0, 30] }";
             /// Radius that is added on all sides. Default: 0.
             may "round": LENGTH, "1";
@@ -191,10 +193,24 @@ static FORMS: &[(Table, Read)] = &[
             };
             let half = Vec3::from(sides?) * 0.5;
             let body = body?;
+            // The name of a hardpoint, which the box follows.
+            let position = fields.get("frame").and_then(|f| f.value.get_ref().as_table()?.get("position"));
+            let centre = position.and_then(|value| value.get_ref().as_str());
+            let per_metre = r.units.length.per_metre();
             let corner = |k: u8| {
                 let side = |axis: u8, length: f64| if k >> axis & 1 == 1 { length } else { -length };
-                let at = pose.point(Vec3::new(side(0, half.x), side(1, half.y), side(2, half.z)));
-                PointRef::On { body: body.clone(), at: LocationDraft::At(at) }
+                let from_centre = pose.rot * Vec3::new(side(0, half.x), side(1, half.y), side(2, half.z));
+                let beside = |name: &str| {
+                    let along = |axis: &str, by: f64| {
+                        let sum = Expression::sum(&format!("{name}.{axis}"), by * per_metre).ok()?;
+                        Some(sum.with_unit(per_metre))
+                    };
+                    let Vec3 { x, y, z } = from_centre;
+                    let coordinates = [along("x", x)?, along("y", y)?, along("z", z)?];
+                    Some(LocationDraft::Formula(Box::new(coordinates)))
+                };
+                let at = centre.and_then(beside).unwrap_or(LocationDraft::At(pose.r + from_centre));
+                PointRef::On { body: body.clone(), at }
             };
             Some((BodyShapeKindDraft::Hull { points: (0..8).map(corner).collect() }, round))
         },

@@ -2,17 +2,21 @@
 
 use std::path::Path;
 
-use hardpoint::draft::{DesignListDraft, Section, SweepRangeDraft, SweepSettingsDraft};
-use hardpoint::model::{SweepMethod, SweepSettings};
+use hardpoint::draft::{
+    DesignListDraft, DraftError, DraftLocation, Section, SweepRangeDraft, SweepSettingsDraft,
+};
+use hardpoint::joint::Quantity;
+use hardpoint::model::{Model, SweepMethod, SweepRange, SweepSettings, VariableId};
 use toml::de::DeValue;
 
 use crate::values::{
     DataError, EntryPlace, Fields, METRIC, NUMBER, OUTPUT, Reader, Shape, Subject, TWO_NUMBERS, Table,
     Wanted, shown, table,
 };
-use hardpoint_table::csv::original;
+use hardpoint_table::Units;
+use hardpoint_table::figures::variable_unit;
 
-use super::data::{no_csv, number, records_of, text_at, unquoted};
+use super::data::{Title, no_csv, number, records_of, text_at, unquoted};
 use super::raw::Raw;
 
 /// Maximum number of designs that are read.
@@ -31,10 +35,10 @@ pub(crate) const SWEEP: Table = table! {
     or("1000") "samples": Shape::Count(MOST_SAMPLES), "100000";
     /// Seed of the random numbers: the same seed gives the same designs.
     or("1") "seed": Shape::Count(u32::MAX), "7";
-    /// With `method = "factorial"`: default number of values of a variable.
+    /// With `method = "factorial"`: default number of values of a variable, two or more.
     or("3") "levels": Shape::Count(MOST_LEVELS), "5";
     /// Instead of these keys: a CSV file in the model's folder with the designs, whose first line names design
-    /// variables.
+    /// variables, with or without units.
     may "designs": Shape::Text, "\"designs.csv\"";
     /// Names of the stored metrics. Default: all.
     may "metrics": Shape::list(&METRIC), "[\"toe_range\"]";
@@ -62,9 +66,11 @@ pub(super) const RANGE: Table = table! {
     may "from": NUMBER, "-5";
     /// Upper end. Default: its upper bound.
     may "to": NUMBER, "5";
-    /// With `method = "factorial"`: number of values, including both ends. Default: that of `[sweep]`.
+    /// With `method = "factorial"`: number of values, two or more, including both ends. Default: that of `[sweep]`.
     may "levels": Shape::Count(MOST_LEVELS), "5";
 };
+/// Code of a column of a list that is no value of a design variable.
+pub(super) const LIST_CODE: &str = "HP0247";
 /// Lists of designs.
 const LIST: Wanted<'static> = Wanted {
     purpose: "list of designs",
@@ -97,13 +103,18 @@ pub(super) fn sweep(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
     raw.push(r, Section::Sweep, place);
     let ranges = sweep_ranges(r, &fields, raw);
     let units = [r.units.length.per_metre(), r.units.angle.per_radian()];
-    let list = |(names, rows): List| DesignListDraft {
+    let list = |DesignList { titles, rows }: DesignList| DesignListDraft {
         file: fields.get("designs").and_then(|f| f.value.get_ref().as_str()).unwrap_or_default().into(),
-        names,
+        names: titles.into_iter().map(|title| title.name).collect(),
         rows,
         per_metre: units[0],
         per_radian: units[1],
     };
+    let designs = designs.map(|mut list| {
+        list.convert(r.units);
+        raw.listed.clone_from(&list.titles);
+        list
+    });
     raw.draft.sweeping = Some(SweepSettingsDraft {
         method: method.map(|k| SweepMethod::NAMED[k]),
         ranges: fields.get("variables").map(|_| ranges),
@@ -155,17 +166,68 @@ fn sweep_ranges(r: &mut Reader<'_>, sweep: &Fields<'_>, raw: &mut Raw) -> Vec<Sw
     found
 }
 
-/// Column names and rows.
-pub(crate) type List = (Vec<String>, Vec<Vec<f64>>);
+/// Designs listed in a file.
+#[derive(Debug)]
+pub(crate) struct DesignList {
+    /// Title of each column: a design variable, and the unit of its values.
+    pub titles: Vec<Title>,
+    /// Values of each design.
+    pub rows: Vec<Vec<f64>>,
+}
+
+impl DesignList {
+    /// Converts the lengths and angles whose columns have a unit to those of the model file.
+    fn convert(&mut self, units: Units) {
+        for (k, title) in self.titles.iter().enumerate() {
+            for of in [Quantity::Length, Quantity::Angle] {
+                // A unit of another kind is an error once the variable is known.
+                if let Ok(own) = title.units(units, of.into(), "", LIST_CODE)
+                    && own != units
+                {
+                    self.rows.iter_mut().for_each(|row| row[k] = units.from_si(of, own.to_si(of, row[k])));
+                }
+            }
+        }
+    }
+}
+
+/// HP0247: a column of the model's list of designs whose unit is not one of its variable.
+pub(super) fn wrong_unit(
+    model: &Model,
+    units: Units,
+    list: &DesignListDraft,
+    titles: &[Title],
+) -> Option<DraftError> {
+    let ranges = &model.sweeping.as_ref()?.ranges;
+    let one = |(column, (title, range)): (usize, (&Title, &SweepRange))| {
+        let error = units_of_column(model, units, title, range.variable).err()?;
+        let note = format!("it is the title of column {} of `{}`", column + 1, list.file);
+        let at = DraftLocation { section: Section::Sweep, index: 0, key: "designs", item: None };
+        let DataError { code, message, help, .. } = error;
+        Some(DraftError { code, at, message, notes: vec![note], help })
+    };
+    titles.iter().zip(ranges).enumerate().find_map(one)
+}
+
+/// Units of the values of a variable below a title.
+pub(super) fn units_of_column(
+    model: &Model,
+    units: Units,
+    title: &Title,
+    variable: VariableId,
+) -> Result<Units, DataError> {
+    let variable = &model.variables[variable.0];
+    title.units(units, variable.quantity.into(), &variable_unit(model, units, variable), LIST_CODE)
+}
 
 /// List of designs in a file in any folder.
-pub(crate) fn list_at(path: &Path) -> Result<List, DataError> {
+pub(crate) fn list_at(path: &Path) -> Result<DesignList, DataError> {
     let (name, text) = text_at(path, "design variables")?;
     list_in(&text, &name)
 }
 
 /// Reads a list of designs: names of variables, then their values, row by row.
-fn list_in(text: &str, name: &str) -> Result<List, DataError> {
+fn list_in(text: &str, name: &str) -> Result<DesignList, DataError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let name = shown(name);
     let mut reader = records_of(text);
@@ -175,8 +237,8 @@ fn list_in(text: &str, name: &str) -> Result<List, DataError> {
     if !reader.read_record(&mut record).map_err(no_csv)? {
         return Err(DataError::content(format!("`{name}` is empty"), write));
     }
-    let names: Vec<String> = record.iter().map(|field| bare(original(unquoted(field))).to_owned()).collect();
-    if names.iter().all(|n| n.parse::<f64>().is_ok()) {
+    let titles: Vec<Title> = record.iter().map(Title::of).collect();
+    if titles.iter().all(|title| title.name.parse::<f64>().is_ok()) {
         let message =
             format!("`{name}`, line 1: there are numbers in place of the names of design variables");
         return Err(DataError::content(message, write));
@@ -184,28 +246,20 @@ fn list_in(text: &str, name: &str) -> Result<List, DataError> {
     let mut rows: Vec<Vec<f64>> = Vec::new();
     while reader.read_record(&mut record).map_err(no_csv)? {
         let line = record.position().map_or(0, csv::Position::line);
-        if record.len() > names.len() {
+        if record.len() > titles.len() {
             let message =
-                format!("`{name}`, line {line} has {} values for {} variables", record.len(), names.len());
+                format!("`{name}`, line {line} has {} values for {} variables", record.len(), titles.len());
             return Err(DataError::content(message, "give one value for each name of the first line"));
         }
-        let value = |(k, title): (usize, &String)| {
-            let here = format!("`{name}`, line {line}, column {} (`{}`)", k + 1, shown(title));
+        let value = |(k, title): (usize, &Title)| {
+            let here = format!("`{name}`, line {line}, column {} (`{}`)", k + 1, shown(&title.name));
             let help = "every design needs a value of every variable; write 0 for no change";
             number(record.get(k).map(unquoted), &here, help)
         };
-        rows.push(names.iter().enumerate().map(value).collect::<Result<_, _>>()?);
+        rows.push(titles.iter().enumerate().map(value).collect::<Result<_, _>>()?);
     }
     if rows.is_empty() {
         return Err(DataError::content(format!("`{name}` has no designs"), write));
     }
-    Ok((names, rows))
-}
-
-/// Removes the unit from a column title: `B_x [mm]`.
-pub(super) fn bare(title: &str) -> &str {
-    match title.split_once(" [") {
-        Some((name, unit)) if unit.ends_with(']') => name,
-        _ => title,
-    }
+    Ok(DesignList { titles, rows })
 }

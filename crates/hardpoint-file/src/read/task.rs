@@ -11,8 +11,9 @@ use crate::values::{
     Source, Table, Wanted, all_read, shown, table,
 };
 use hardpoint_table::Units;
+use hardpoint_table::figures::symbol;
 
-use super::data::{no_csv, number, records_of, unquoted};
+use super::data::{Title, no_csv, number, records_of, unquoted};
 use super::model::{UNITS, units};
 use super::parse::{ReadError, syntax_errors, text_of};
 
@@ -278,17 +279,12 @@ fn aim(r: &mut Reader<'_>, fields: &Fields<'_>) -> Option<Aim> {
             for key in OF_POINTS {
                 r.out_of_place(fields, key, "it belongs to `points`, and the task has `poses`");
             }
-            let (mut poses, entries) = rows::<3>(r, fields, f, ["x", "y", "angle"])?;
-            for pose in &mut poses {
-                let [x, y, angle] = *pose;
-                let length = |x: f64| r.units.to_si(Quantity::Length, x);
-                *pose = [length(x), length(y), r.units.to_si(Quantity::Angle, angle)];
-            }
+            let [x, y] = POINT;
+            let (poses, entries) = rows(r, fields, f, [x, y, ("angle", Quantity::Angle)])?;
             Some((TaskAim::Poses(poses), f.value.span(), entries))
         }
         (None, Some(f)) => {
-            let (mut points, entries) = rows::<2>(r, fields, f, ["x", "y"])?;
-            points.iter_mut().flatten().for_each(|x| *x = r.units.to_si(Quantity::Length, *x));
+            let (points, entries) = rows(r, fields, f, POINT)?;
             let is_closed = r.flag_of(fields, "closed")?;
             let crank_angles = r.given(fields, "crank_angles", |r, f| {
                 let subject = fields.subject(f.key);
@@ -308,25 +304,32 @@ fn aim(r: &mut Reader<'_>, fields: &Fields<'_>) -> Option<Aim> {
     }
 }
 
-/// Rows of numbers in a list, or in a CSV file whose first line may name its columns.
+/// Name and quantity of a column.
+type ColumnOf = (&'static str, Quantity);
+/// Columns of points.
+const POINT: [ColumnOf; 2] = [("x", Quantity::Length), ("y", Quantity::Length)];
+
+/// Rows of numbers, SI, in a list, or in a CSV file whose first line may name its columns.
 fn rows<const N: usize>(
     r: &mut Reader<'_>,
     fields: &Fields<'_>,
     f: Field<'_>,
-    names: [&str; N],
+    columns: [ColumnOf; N],
 ) -> Option<(Vec<[f64; N]>, Places)> {
-    let subject = fields.subject(f.key);
-    let one = format!("[{}]", names.join(", "));
+    let (subject, units) = (fields.subject(f.key), r.units);
+    let one = format!("[{}]", columns.map(|(name, _)| name).join(", "));
     let (rows, places) = if f.value.get_ref().is_str() {
         let file = r.name(f.value, &subject, "the name of a CSV file")?;
-        let found = r.text_of_file(&file, &FILE).and_then(|text| rows_in(text, &file, &names));
+        let found = r.text_of_file(&file, &FILE).and_then(|text| rows_in(text, &file, &columns, units));
         (found.map_err(|e| r.data_error(f.value.span(), e)).ok()?, Vec::new())
     } else {
         let list =
             r.list(f.value, &subject, &format!("a list of rows `{one}`, or the name of a CSV file"))?;
         let places = list.iter().map(|v| v.span()).collect();
         let expected = format!("a row `{one}`");
-        let rows = (0..).zip(&list).map(|(k, v)| r.numbers::<N>(v, &subject.item(k), &expected));
+        let in_si = |row: [f64; N]| std::array::from_fn(|k| units.to_si(columns[k].1, row[k]));
+        let rows = (0..).zip(&list);
+        let rows = rows.map(|(k, v)| r.numbers::<N>(v, &subject.item(k), &expected).map(in_si));
         (all_read(rows)?, places)
     };
     if rows.len() > MOST_POINTS {
@@ -337,31 +340,81 @@ fn rows<const N: usize>(
     Some((rows, places))
 }
 
-/// Rows of a CSV text.
-fn rows_in<const N: usize>(text: &str, name: &str, names: &[&str; N]) -> Result<Vec<[f64; N]>, DataError> {
+/// Rows of a CSV text, SI.
+fn rows_in<const N: usize>(
+    text: &str,
+    name: &str,
+    columns: &[ColumnOf; N],
+    units: Units,
+) -> Result<Vec<[f64; N]>, DataError> {
     let name = shown(name);
     let mut reader = records_of(text.strip_prefix('\u{feff}').unwrap_or(text));
     let mut record = csv::StringRecord::new();
+    // Index of each column in the file, and the units of its numbers
+    let mut places = None;
     let mut rows = Vec::new();
-    let write = format!("write the columns {} on each line", names.join(", "));
+    let write = format!("write the columns {} on each line", columns.map(|(name, _)| name).join(", "));
     while reader.read_record(&mut record).map_err(|e| no_csv(&name, &e))? {
         let line = record.position().map_or(0, csv::Position::line);
-        let is_header = rows.is_empty() && record.iter().all(|cell| unquoted(cell).parse::<f64>().is_err());
-        if is_header && line == 1 {
-            continue;
-        }
+        let places: &[(usize, Units); N] = match &places {
+            Some(places) => places,
+            None if record.iter().all(|cell| unquoted(cell).parse::<f64>().is_err()) => {
+                places = Some(header(&record, &name, columns, units)?);
+                continue;
+            }
+            None => places.insert(std::array::from_fn(|k| (k, units))),
+        };
         if record.len() > N {
             let message = format!("`{name}`, line {line} has {} columns", record.len());
             return Err(DataError::content(message, &write));
         }
         let mut row = [0.0; N];
-        for (k, x) in row.iter_mut().enumerate() {
-            let here = format!("`{name}`, line {line}, column {} (`{}`)", k + 1, names[k]);
-            *x = number(record.get(k).map(unquoted), &here, &write)?;
+        for ((x, (place, units)), (title, quantity)) in row.iter_mut().zip(places).zip(columns) {
+            let here = format!("`{name}`, line {line}, column {} (`{title}`)", place + 1);
+            *x = units.to_si(*quantity, number(record.get(*place).map(unquoted), &here, &write)?);
         }
         rows.push(row);
     }
     if rows.is_empty() { Err(DataError::content(format!("`{name}` is empty"), &write)) } else { Ok(rows) }
+}
+
+/// Index of each column in a file by the titles of its first line, and the units of its numbers.
+fn header<const N: usize>(
+    record: &csv::StringRecord,
+    file: &str,
+    columns: &[ColumnOf; N],
+    units: Units,
+) -> Result<[(usize, Units); N], DataError> {
+    const CODE: &str = "HP0112";
+    let names = columns.map(|(name, _)| name);
+    let mut found = [None; N];
+    for (place, cell) in record.iter().enumerate() {
+        let title = Title::of(cell);
+        let note = format!("it is the title of column {} of `{file}`", place + 1);
+        let Some(k) = names.iter().position(|name| title.name.eq_ignore_ascii_case(name)) else {
+            let message = format!("`{}` is not a column of the table", shown(&title.name));
+            let help = format!(
+                "name the columns {}, in any order, or leave the line of names out",
+                names.join(", ")
+            );
+            return Err(DataError::new(CODE, message, help).note(note));
+        };
+        if found[k].is_some() {
+            let message = format!("`{}` is the title of two columns of `{file}`", names[k]);
+            return Err(DataError::new(CODE, message, "remove one of the two"));
+        }
+        let quantity = columns[k].1;
+        let own = title.units(units, quantity.into(), symbol(units, quantity), CODE);
+        found[k] = Some((place, own.map_err(|error| error.note(note))?));
+    }
+    let mut all = [(0, units); N];
+    for ((one, found), name) in all.iter_mut().zip(found).zip(names) {
+        *one = found.ok_or_else(|| {
+            let message = format!("`{file}` has no column `{name}`");
+            DataError::new(CODE, message, format!("add the column; the table has {}", names.join(", ")))
+        })?;
+    }
+    Ok(all)
 }
 
 /// Types of linkages: four-bars, slider-cranks.

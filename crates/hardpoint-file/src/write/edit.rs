@@ -14,7 +14,7 @@ use hardpoint_table::Units;
 
 use super::split::split;
 use super::text::Step::{self, At, Key};
-use super::text::{ROUND_OFF, number_style, replace, shortest, value_at};
+use super::text::{ROUND_OFF, add, number_style, replace, shortest, table_at, value_at};
 
 /// Tolerance of directions and lengths of the saved file, in rad or relative to the mechanism's size: some hundred
 /// times the round-off of their roots, far below manufacturing tolerances.
@@ -65,6 +65,7 @@ impl ModelFile {
         edit.fixed_lengths();
         edit.laws();
         edit.joints();
+        edit.second_axes();
         edit.curves();
         edit.bounds();
         edit.values_of_variables();
@@ -201,7 +202,7 @@ pub fn hardpoint_in(text: &str, name: &str) -> Option<[f64; 3]> {
 }
 
 /// A change that the file has no number for.
-const CODE: &str = "HP0505";
+pub(super) const CODE: &str = "HP0505";
 
 /// A file in which a changed design is written.
 pub(super) struct Edit<'f> {
@@ -393,6 +394,34 @@ impl Edit<'_> {
         }
     }
 
+    /// Writes the x axes of joints that turn with the design and have the default, which the file with the new places
+    /// and directions would give another direction.
+    fn second_axes(&mut self) {
+        let model = &self.file.model;
+        let after = model.geometry(&self.values);
+        for (j, joint) in model.joints.iter().enumerate().filter(|(_, joint)| has_default_x(model, joint)) {
+            let frame = model.bodies[joint.bodies[0].0].frame.rot * after.markers[j][0].rot;
+            // An image has the axes of its original.
+            if (frame.cols[0] - frame.cols[2].any_perpendicular()).norm() <= SAME
+                || self.is_image(&joint.name)
+            {
+                continue;
+            }
+            let texts = [0, 1, 2].map(|n| {
+                let x = frame.cols[0].to_array()[n];
+                shortest(x, ROUND_OFF, |x| x, x)
+            });
+            let x: Value = format!("[{}]", texts.join(", ")).parse().expect("a list of numbers is a value");
+            let by = self.of(|c| !matches!(c, Change::Law(_) | Change::Parameter(_)));
+            let table = table_at(&mut self.document, &[Key("joints"), Key(&joint.name)]);
+            if table.map(|table| add(table, "axis2", x)).is_none() && !self.is_elsewhere(&by, &joint.name) {
+                let why =
+                    format!("it turns the x axis of joint `{}`, which has no table in the file", joint.name);
+                self.refuse(&by, why, "write the joint in a table of its own, with `axis2`");
+            }
+        }
+    }
+
     /// Bounds stay at the same values: [a, b] becomes [a - x, b - x] for a variable whose value x becomes 0. Bounds of
     /// parameters are absolute.
     fn bounds(&mut self) {
@@ -563,6 +592,18 @@ impl Edit<'_> {
     }
 }
 
+/// True if a joint has the default x axis, which its coordinates count along, or elastic laws and reactions where there
+/// are loads.
+fn has_default_x(model: &Model, joint: &Joint) -> bool {
+    let is_default = !joint.unnamed && joint.axis.is_some() && joint.axis2.is_none();
+    is_default
+        && match joint.kind.axis2 {
+            Need::Optional => true,
+            Need::Orienting => !model.elements.is_empty(),
+            Need::Required | Need::OnBodyJ | Need::Unused => false,
+        }
+}
+
 /// Markers that an axis of a joint defines.
 fn ends_of(joint: &Joint, which: usize) -> &'static [usize] {
     match (joint.kind.axis2, which) {
@@ -607,7 +648,8 @@ fn difference(model: &Model, values: &[f64], saved: &Model) -> Option<(String, S
             if joint.axis.is_some() && !near(a.rot.cols[2], b.rot.cols[2], 1.0) {
                 return found("axis of joint", &joint.name);
             }
-            let has_x = joint.axis2.is_some() && joint.kind.axis2 != Need::OnBodyJ;
+            let has_x =
+                joint.axis2.is_some() && joint.kind.axis2 != Need::OnBodyJ || has_default_x(model, joint);
             if has_x && !near(a.rot.cols[0], b.rot.cols[0], 1.0) {
                 return found("second axis of joint", &joint.name);
             }

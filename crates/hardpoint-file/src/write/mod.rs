@@ -5,6 +5,7 @@ mod curves;
 #[cfg(test)]
 mod docs;
 mod edit;
+mod files;
 mod laws;
 mod lengths;
 mod merge;

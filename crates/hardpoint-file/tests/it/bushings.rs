@@ -5,7 +5,7 @@ use hardpoint::model::{Model, VariableId};
 use hardpoint::space::{Mat3, Vec3};
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Run, Solution};
-use hardpoint_file::parse;
+use hardpoint_file::{Severity, parse};
 
 use crate::equilibrium::{Beside, verify_all};
 
@@ -607,4 +607,35 @@ fn an_arm_turns_about_its_joints_whichever_are_elastic_first_or_cut() {
             }
         }
     }
+}
+
+#[test]
+fn a_bushing_between_two_places_is_reported() {
+    let text = |to: &str| {
+        format!(
+            r#"
+name = "apart"
+units = {{ length = "mm", angle = "deg" }}
+bodies = {{ b = {{}} }}
+[masses]
+m = {{ type = "rigid", centre = {{ body = "b", at = [10, 0, 0] }}, mass = 1 }}
+[forces]
+s = {{ type = "spring", from = {{ body = "ground", at = [0, 9, 0] }}, to = {{ body = "b", at = [10, 0, 0] }}, stiffness = 1 }}
+u = {{ type = "bushing", from = {{ body = "ground", at = [0, 0, 0] }}, to = {{ body = "b", at = {to} }}, x = 100, y = 100, z = 100, about_x = 10, about_y = 10, about_z = 10 }}
+[equilibrium]
+[points]
+p = {{ body = "b", at = [10, 0, 0] }}
+[time]
+at = [0, 1]
+"#
+        )
+    };
+    let file = |to: &str| parse(&text(to), "apart.toml").unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(file("[0, 0, 0]").remarks, []);
+    assert_eq!(file("[1e-6, 0, 0]").remarks, []);
+    let apart = file("[5, 0, 0]");
+    let [warning] = &apart.remarks[..] else { panic!("{:?}", apart.remarks) };
+    assert_eq!((warning.code, warning.severity), ("HP0256", Severity::Warning));
+    assert_eq!(warning.message, "the two points of bushing `u` are 5 mm apart");
+    assert!(apart.render(warning, false).contains("apart.toml:9:1"), "{}", apart.render(warning, false));
 }

@@ -239,6 +239,67 @@ fn a_robust_loss_resists_outliers() {
     assert_eq!((huber.status, cauchy.status), (Status::Found, Status::Found));
 }
 
+/// Carriage that is read at a point whose place along the slide is unknown.
+const SLIDE: &str = r#"
+name = "slide"
+units = { length = "mm", angle = "deg" }
+hardpoints = { O = [0, 0, 0], P = [10, 0, 0] }
+bodies = { carriage = {} }
+joints.s = { type = "translational", bodies = ["ground", "carriage"], at = "O", axis = "x" }
+drivers.d = { joint = "s", law = "t" }
+points.P = { body = "carriage", at = "P" }
+design.off = { move = "P", along = "x" }
+time = { end = 1, steps = 2 }
+"#;
+
+#[test]
+fn a_robust_loss_scales_by_the_median_of_an_even_number_of_residuals() {
+    let file = parse(SLIDE, "slide.toml").unwrap_or_else(|e| panic!("{e}"));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("four.csv");
+    std::fs::write(&path, "d,P.x\n0,10.0\n1,11.1\n2,12.2\n3,14.0\n").unwrap();
+    let measured = file.measured(&path, &[]).unwrap_or_else(|e| panic!("{e}")).measurements;
+    let found = fitted_by(&file.model, &measured, &all(&file.model), Loss::Huber).unwrap();
+    // Weighted means of 0, 0.1, 0.2 and 1 mm, iterated elsewhere with s = median |r| / 0.6745; sigma = s / sqrt(sum w).
+    assert!((found.estimates[0] - 0.199_115_696e-3).abs() < 1e-9, "{:?}", found.estimates);
+    assert!(
+        (found.certainty.sigmas[0].unwrap() - 0.120_404_971e-3).abs() < 1e-9,
+        "{:?}",
+        found.certainty.sigmas
+    );
+}
+
+#[test]
+fn units_of_titles_are_converted_or_rejected() {
+    let file = parse(SLIDE, "slide.toml").unwrap_or_else(|e| panic!("{e}"));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("read.csv");
+    let read = |text: &str| {
+        std::fs::write(&path, text).unwrap();
+        file.measured(&path, &[]).map(|data| data.measurements)
+    };
+    let own = read("d,P.x,sigma P.x\n20,30.5,0.1\n").unwrap();
+    for text in [
+        "d [cm],P.x [m],sigma P.x\n2,0.0305,0.0001\n",
+        "d [cm],P.x [m],sigma P.x [mm]\n2,0.0305,0.1\n",
+        "d,P.x,sigma P.x\ncm,m,-\n2,0.0305,0.0001\n",
+    ] {
+        let other = read(text).unwrap_or_else(|e| panic!("{e}"));
+        let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-15, "{text}: {a} {b}");
+        near(other.postures[0][0], own.postures[0][0]);
+        near(other.readings[0].value, own.readings[0].value);
+        near(other.readings[0].sigma.unwrap(), own.readings[0].sigma.unwrap());
+    }
+    for (text, words) in [
+        ("d [deg],P.x\n2,30\n", "`d` is in `deg`, and it is a length"),
+        ("d,P.x [banana]\n2,30\n", "`P.x` is in `banana`, and it is a length"),
+    ] {
+        let error = read(text).expect_err(text);
+        assert_eq!(error.list()[0].code, "HP0248");
+        assert!(error.render(false).contains(words), "{error}");
+    }
+}
+
 #[test]
 fn a_proposed_reading_has_the_predicted_effect() {
     let model = crank();
@@ -321,10 +382,14 @@ fn a_posture_out_of_reach_is_left_out_and_reported() {
     let found = fitted_by(&short, &measured, &all(&short)[..1], Loss::Squares).unwrap();
     assert_eq!(found.not_reached.len(), 1);
     assert!(
-        found.not_reached[0].posture == 2 && !found.not_reached[0].why.is_empty(),
+        found.not_reached[0].posture == 2
+            && found.not_reached[0].why == "the mechanism reaches a limit position",
         "{:?}",
         found.not_reached
     );
+    // The path ends where the rod is perpendicular to the slide: r sin a = e + l. The crank is drawn at 40 deg.
+    let last = found.not_reached[0].last.as_ref().unwrap()[0];
+    assert!((last - (0.9_f64.asin() - 40.0_f64.to_radians())).abs() < 1e-3, "{last}");
     assert!(found.fitted[2].is_none() && found.fitted[3].is_some());
     assert!(fitted_by(&model, &measured, &[], Loss::Squares).is_err());
 }
@@ -445,7 +510,7 @@ const BROKEN: &[(&str, &str, &str, &[&str])] = &[
     ),
     ("unknown", "spring_strut,temperature\n0,1\n", "HP0248", &["`temperature`", "`#` leaves its column out"]),
     ("twice", "spring_strut,toe,toe\n0,1,1\n", "HP0248", &["`toe` is the title of two columns"]),
-    ("unit", "spring_strut,toe [rad]\n0,1\n", "HP0248", &["`toe` is in `rad`, and the model file has deg"]),
+    ("unit", "spring_strut,toe [mm]\n0,1\n", "HP0248", &["`toe` is in `mm`, and it is an angle", "deg, rad"]),
     ("nothing measured", "spring_strut\n0\n", "HP0248", &["has no column of readings", "wheel_centre.z"]),
     (
         "sigma of nothing",
@@ -483,8 +548,11 @@ fn invalid_tables_are_reported_with_line_and_column() {
         assert!(words.iter().all(|w| shown.contains(w)), "{name}: {shown}");
     }
     let path = folder.path().join("good.csv");
-    std::fs::write(&path, "# bench 3\nspring_strut [mm];toe [deg];#note;sigma toe\n10;0.5;7;\n-10;;8;\n")
-        .unwrap();
+    std::fs::write(
+        &path,
+        "# bench 3\nspring_strut [mm];toe [deg];#note;sigma toe\n10;0.5;first, cold;\n-10;;8;\n",
+    )
+    .unwrap();
     let sigma = |name: &str, x: f64| file.measured(&path, &[(name.into(), x)]);
     let good = sigma("toe", 0.01).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!((good.lines.clone(), good.measurements.readings.len()), (vec![3, 4], 1));

@@ -133,3 +133,56 @@ fn a_case_may_take_its_laws_from_files_and_be_the_only_one_that_has_them() {
     let error = read(&path).unwrap_err();
     assert!(error.to_string().contains("case `more` leaves driver `travel` without a `law`"), "{error}");
 }
+
+#[test]
+fn laws_of_forces_do_not_follow_parameters() {
+    let text = |parameters: &str, own: &str, law: &str| {
+        format!(
+            r#"
+name = "pushed"
+units = {{ length = "mm", angle = "deg" }}
+parameters = {{ {parameters} }}
+bodies = {{ b = {{}} }}
+[joints]
+j = {{ type = "translational", bodies = ["ground", "b"], at = [0, 0, 0], axis = "x" }}
+[forces]
+s = {{ type = "joint_spring", joint = "j", stiffness = 5 }}
+F = {{ type = "force", at = {{ body = "b", at = [0, 0, 0] }}, force = 50, along = "x", law = {own} }}
+[equilibrium]
+[measures]
+q = {{ type = "coordinate", joint = "j" }}
+[cases.a]
+laws = {{ F = {law} }}
+[time]
+at = [0, 1]
+"#
+        )
+    };
+    let expression = r#"{ type = "expression", law = "w*t", parameters = { w = "c + 1" } }"#;
+    for (own, law, subject) in [
+        ("\"0\"", "\"c*t\"", "the law of force `F` in case `a` cannot follow parameter `c`"),
+        ("\"0\"", expression, "the law of force `F` in case `a` cannot follow parameter `c`"),
+        ("\"c*t\"", "\"t\"", "cannot follow parameter `c`"),
+        (expression, "\"t\"", "cannot follow parameter `c`"),
+    ] {
+        let Err(faults) = parse(&text("c = 3", own, law), "pushed.toml") else { panic!("{own} {law}") };
+        let [fault] = faults.list() else { panic!("{faults}") };
+        assert_eq!(fault.code, "HP0230", "{faults}");
+        assert!(fault.message.contains(subject), "{faults}");
+        assert!(fault.help.as_ref().is_some_and(|help| help.contains("force = \"50*c\"")), "{faults}");
+        // A parameter that nothing changes is a number.
+        let fixed = text("c = { value = 3, design = false }", own, law);
+        let file = parse(&fixed, "pushed.toml").unwrap_or_else(|e| panic!("{e}"));
+        let solution = solved(&file.model.in_case(CaseId(0)));
+        let q = solution.measured.index("q").unwrap();
+        // 50 N over 5 N/mm times the law
+        let factor = if law == "\"t\"" {
+            1.0
+        } else if law == expression {
+            4.0
+        } else {
+            3.0
+        };
+        assert!((solution.measured.value(1, q)[0] - 0.01 * factor).abs() < 1e-12, "{law}");
+    }
+}

@@ -741,3 +741,178 @@ between = [["rod", "arm"], ["ring", "wall", "block"]]
         assert_near(only.at.distance[0] * 1e3, height - sin.hypot(cos) - 6.0, &format!("{steps} steps"));
     }
 }
+
+/// Two legs between the ground and a platform that turns about an inclined axis.
+fn crossing_legs(steps: usize) -> String {
+    format!(
+        r#"
+name = "legs"
+units = {{ length = "mm", angle = "deg" }}
+time = {{ end = 1, steps = {steps} }}
+hardpoints = {{ b0 = [-20, 0, 0], b1 = [20, 3, 0], t0 = [20, 0, 50], t1 = [-20, -8, 50] }}
+bodies = {{ platform = {{}} }}
+[joints]
+pivot = {{ type = "revolute", bodies = ["ground", "platform"], at = [30, 0, 0], axis = [0.2, 0.1, 1] }}
+first = {{ type = "leg", bodies = ["ground", "platform"], at = ["b0", "t0"] }}
+second = {{ type = "leg", bodies = ["platform", "ground"], at = ["t1", "b1"] }}
+[drivers]
+motor = {{ joint = "pivot", law = "-30*t" }}
+[shapes]
+first = {{ capsule = "first", radius = 1 }}
+second = {{ capsule = "second", radius = 1 }}
+[clearances]
+c = {{ between = ["first", "second"] }}
+[design]
+b0 = {{ move = "b0", along = "y" }}
+"#
+    )
+}
+
+#[test]
+fn legs_that_pass_through_each_other_are_as_deep_as_their_radii() {
+    for steps in [7, 10, 23] {
+        let model = model_of(&crossing_legs(steps));
+        let found = Analysis::new(&model).unwrap().clearances(&[]);
+        let least = pair(&model, &found, "c").least().unwrap();
+        assert!(least.at.cores_meet, "{steps} steps: {least:?}");
+        assert!((least.at.distance[0] + 2e-3).abs() < 1e-8, "{steps} steps: {least:?}");
+        // The root of (t1 - b0) . (e x f) along the rotation by the formula of Rodrigues, by bisection.
+        assert!((least.at.time - 0.240_180_706_177).abs() < 1e-6, "{steps} steps: {least:?}");
+        assert!(least.d.iter().all(|d| d.is_nan()), "{steps} steps: {least:?}");
+    }
+}
+
+#[test]
+fn rods_between_the_same_bodies_are_a_pair_in_any_order_of_their_bodies() {
+    let text = |second: &str, between: &str| {
+        format!(
+            r#"
+name = "legs"
+units = {{ length = "mm", angle = "deg" }}
+time = {{ end = 1, steps = 4 }}
+hardpoints = {{ b0 = [0, 0, 0], b1 = [10, 20, 0], t0 = [30, 40, 50], t1 = [-5, 10, 60] }}
+bodies = {{ platform = {{}} }}
+[joints]
+slide = {{ type = "translational", bodies = ["ground", "platform"], at = [0, 0, 0], axis = "z" }}
+first = {{ type = "leg", bodies = ["ground", "platform"], at = ["b0", "t0"] }}
+second = {{ type = "leg", {second} }}
+[drivers]
+lift = {{ joint = "slide", law = "20*t" }}
+[shapes]
+first = {{ capsule = "first", radius = 1 }}
+tube = {{ capsule = "first", radius = 2 }}
+second = {{ capsule = "second", radius = 1 }}
+[clearances]
+c = {{ between = {between} }}
+"#
+        )
+    };
+    let orders = [
+        "bodies = [\"ground\", \"platform\"], at = [\"b1\", \"t1\"]",
+        "bodies = [\"platform\", \"ground\"], at = [\"t1\", \"b1\"]",
+    ];
+    for order in orders {
+        let model = model_of(&text(order, "[\"first\", \"second\"]"));
+        let found = Analysis::new(&model).unwrap().clearances(&[]);
+        let least = pair(&model, &found, "c").least().unwrap();
+        // The common perpendicular of the lines in the design configuration.
+        assert!((least.at.distance[0] - 3.679_902_268_968_7e-3).abs() < 1e-12, "{least:?}");
+        // A rod and a tube around it have the same ends, and do not move relative to each other.
+        assert_eq!(
+            model_of(&text(order, "[[\"first\", \"tube\", \"second\"], \"*\"]")).clearances[0].pairs.len(),
+            2
+        );
+    }
+}
+
+/// A rod that moves up and down through a box: its deepest point is between two faces of it.
+const TIED: &str = r#"
+name = "tied"
+units = { length = "mm", angle = "deg" }
+time = { end = 1, steps = 10 }
+bodies = { arm = {} }
+hardpoints = { P = [60, 2, -30], Q = [63, 4, 30] }
+[joints]
+slide = { type = "translational", bodies = ["ground", "arm"], at = [0, 0, 0], axis = "z" }
+[drivers]
+lift = { joint = "slide", law = "5*sin(2*pi*t)" }
+[shapes]
+rod = { body = "arm", capsule = ["P", "Q"], radius = 3 }
+block = { body = "ground", box = [30, 12, 20], frame = { position = [60, 0, 0] } }
+[clearances]
+gap = { between = ["rod", "block"] }
+[design]
+P_z = { move = "P", along = "z" }
+"#;
+
+#[test]
+fn a_depth_between_two_faces_has_no_derivative_even_where_that_of_one_face_is_zero() {
+    let model = model_of(TIED);
+    let found = Analysis::new(&model).unwrap().clearances(&[]);
+    let pair = pair(&model, &found, "gap");
+    // Neither face along which the rod moves has a rate, and the depth changes.
+    let depths: Vec<f64> = pair.curve.iter().map(|at| at.distance[0]).collect();
+    let range = depths.iter().fold(0.0, |most: f64, d| most.max((d - depths[0]).abs()));
+    assert!(range > 1e-5, "{depths:?}");
+    assert!(pair.curve.iter().all(|at| at.distance[1..].iter().all(|x| x.is_nan())), "{:?}", pair.curve);
+    let tied = pair.minima.iter().filter(|m| m.at.distance[1].is_nan());
+    assert!(tied.into_iter().all(|m| m.d[0].is_nan()), "{:?}", pair.minima);
+}
+
+#[test]
+fn a_smooth_minimum_is_exact_in_a_motion_with_moments_without_rates() {
+    // Both turns of the arm lead through the block; between them the rod is nearest behind it.
+    let text = |end: f64, steps: usize| {
+        TIED.replace("type = \"translational\"", "type = \"cylindrical\"")
+            .replace(
+                "lift = { joint = \"slide\", law = \"5*sin(2*pi*t)\" }",
+                "turn = { joint = \"slide\", coordinate = \"angle\", law = \"360*t\" }\n\
+                 lift = { joint = \"slide\", coordinate = \"displacement\", law = \"50*t\" }\n",
+            )
+            .replace("end = 1, steps = 10", &format!("end = {end}, steps = {steps}"))
+    };
+    let model = model_of(&text(1.3, 13));
+    let found = Analysis::new(&model).unwrap().clearances(&[]);
+    let pair = pair(&model, &found, "gap");
+    assert!(pair.curve.iter().any(|at| at.distance[1].is_nan()), "{:?}", pair.curve);
+    let smooth =
+        pair.minima.iter().filter(|m| m.place == MinimumPlace::Inside && m.at.distance[1].is_finite());
+    let mut count = 0;
+    for minimum in smooth {
+        let [_, rate, acceleration] = minimum.at.distance;
+        assert!(acceleration > 0.0 && (rate / acceleration).abs() < 1e-10, "{minimum:?}");
+        count += 1;
+    }
+    assert!(count > 0, "{:?}", pair.minima);
+}
+
+#[test]
+fn a_box_at_a_hardpoint_follows_it() {
+    let text = r#"
+name = "box"
+units = { length = "mm", angle = "deg" }
+time = { end = 1, steps = 10 }
+hardpoints = { O = [0, 0, 0], B = [50, 0, 0], "the corner" = [100, 0, 0] }
+bodies = { arm = {} }
+joints.pivot = { type = "revolute", bodies = ["ground", "arm"], at = "O", axis = "z" }
+drivers.motor = { joint = "pivot", law = "20*t" }
+[shapes]
+ball = { body = "arm", sphere = "B", radius = 5 }
+block = { body = "ground", box = [20, 60, 20], frame = { position = "the corner", euler = [30, 0, 0] } }
+[clearances]
+gap = { between = ["ball", "block"] }
+[design]
+all_x = { move = ["O", "B", "the corner"], along = "x" }
+corner_x = { move = "the corner", along = "x" }
+"#;
+    let model = model_of(text);
+    let analysis = Analysis::new(&model).unwrap();
+    let least = |design: &[f64]| pair(&model, &analysis.clearances(design), "gap").least().unwrap().clone();
+    let nominal = least(&[0.0, 0.0]);
+    assert!(nominal.d[0].abs() < 1e-12, "{nominal:?}");
+    // All of it moved is the same mechanism elsewhere.
+    assert!((least(&[0.01, 0.0]).at.distance[0] - nominal.at.distance[0]).abs() < 1e-12);
+    let h = 1e-4;
+    let difference = (least(&[0.0, h]).at.distance[0] - least(&[0.0, -h]).at.distance[0]) / (2.0 * h);
+    assert!((difference - nominal.d[1]).abs() < 1e-6 && difference.abs() > 0.1, "{difference} {nominal:?}");
+}

@@ -146,12 +146,16 @@ fn a_saved_design_moves_as_the_changed_one_and_changes_no_other_line() {
             let after = solved(&again, &[]);
             let off = apart(file.model.size(), &before, &after);
             assert!(off < SAME_MOTION, "{what}: {off:e}");
-            // A rod that keeps its length while its ends move gets a line for it, and one for a hardpoint.
+            // A rod that keeps its length while its ends move gets a line for it, and one for a hardpoint; a joint that
+            // turns, one for its x axis.
+            let count = |text: &str, key: &str| text.lines().filter(|l| l.starts_with(key)).count();
+            let has_new_axis = count(&text, "axis2") > count(file.text(), "axis2");
             let kept = |l: &&str| {
                 let is_new = !file.text().lines().any(|old| old == *l);
                 let key = l.split(" = ").next().unwrap();
                 let added = key == "length" || key.contains("_of_");
-                !(file.model.variables[k].fixed_length && is_new && added)
+                let is_axis = key == "axis2" && has_new_axis;
+                !(is_new && (file.model.variables[k].fixed_length && added || is_axis))
             };
             let after: Vec<&str> = text.lines().filter(kept).collect();
             assert_eq!(file.text().lines().count(), after.len(), "{what}");
@@ -168,6 +172,46 @@ fn a_saved_design_moves_as_the_changed_one_and_changes_no_other_line() {
         }
     }
     insta::assert_snapshot!(format!("{saved} saved\n{}", messages.join("\n")));
+}
+
+/// The default x axis follows the global axes, and jumps from one to another; that of the changed design has turned.
+#[test]
+fn a_joint_that_turns_keeps_its_default_x_axis_in_the_saved_file() {
+    let text = |axis: &str| {
+        format!(
+            r#"
+name = "plate"
+units = {{ length = "mm", angle = "deg" }}
+hardpoints = {{ A = [0, 0, 0], B = [60, 61, 52] }}
+bodies = {{ plate = {{}} }}
+time = {{ at = [0, 1] }}
+joints.t = {{ type = "inplane", bodies = ["ground", "plate"], at = "A", axis = {axis} }}
+joints.hold = {{ type = "orientation", bodies = ["ground", "plate"] }}
+drivers.dx = {{ joint = "t", coordinate = "x", law = "100*t" }}
+drivers.dy = {{ joint = "t", coordinate = "y", law = "30*t" }}
+points.P = {{ body = "plate", at = "A" }}
+[design]
+tilt_x = {{ tilt = "t", about = "x" }}
+B_z = {{ move = "B", along = "z" }}
+"#
+        )
+    };
+    let numbers = "[0.60, 0.61, 0.52]";
+    let through = r#"{ through = ["A", "B"] }"#;
+    for (axis, design) in [
+        (numbers, [("tilt_x", 2.0_f64.to_radians())]),
+        (numbers, [("tilt_x", 8.0_f64.to_radians())]),
+        (through, [("B_z", 0.012)]),
+    ] {
+        let text = text(axis);
+        let file = parse(&text, "plate.toml").unwrap_or_else(|e| panic!("{e}"));
+        let values = of(&file, &design);
+        let saved = file.edit(&values).unwrap_or_else(|e| panic!("{e}"));
+        let again = parse(&saved, "plate.toml").unwrap_or_else(|e| panic!("{e}\n{saved}"));
+        assert!(saved.contains("axis2 = ["), "{saved}");
+        let off = apart(file.model.size(), &solved(&file, &values), &solved(&again, &[]));
+        assert!(off < SAME_MOTION, "{axis} {design:?}: {off:e}\n{saved}");
+    }
 }
 
 const ROD: &str = "\

@@ -100,6 +100,7 @@ fn actions() -> Vec<(&'static str, String)> {
         (HINGE, format!("{GIVES}\n{spring}{on_rotor}")),
         (CROSS, format!("{CROSS_GIVES}\n{driven}")),
         (CROSS, format!("{CROSS_GIVES}\n{second}")),
+        (CROSS, format!("{}, about_x = 16, about_z = 12 }}\n{on_rotor}", CROSS_GIVES.trim_end_matches(" }"))),
     ]
 }
 
@@ -197,6 +198,135 @@ fn a_torsion_spring_on_a_tilting_joint_has_a_potential_and_is_the_elastic_joint_
     }
 }
 
+/// A body on an elastic cross with pins along z and x.
+fn on_cross(forces: &str) -> String {
+    format!(
+        r#"
+name = "cross"
+units = {{ length = "mm", angle = "deg" }}
+bodies = {{ b = {{}} }}
+joints = {{ u = {{ type = "universal", bodies = ["ground", "b"], at = [0, 0, 0], axis = "z", axis2 = "x" }} }}
+points = {{ p = {{ body = "b", at = [200, 80, -50] }} }}
+[equilibrium]
+[measures]
+a1 = {{ type = "coordinate", joint = "u", coordinate = "angle" }}
+a2 = {{ type = "coordinate", joint = "u", coordinate = "angle2" }}
+px = {{ type = "position", point = "p", along = "x" }}
+[time]
+at = [0, 0.5, 1]
+[forces]
+{forces}
+"#
+    )
+}
+
+#[test]
+fn an_elastic_cross_deflects_about_its_pins() {
+    let moment = r#"M = { type = "moment", body = "b", moment = 5, about = [3, 0, 4], law = "t" }"#;
+    let elastic = |keys: &str| {
+        let own =
+            format!("e = {{ type = \"elastic_joint\", joint = \"u\", about_x = 0.2, about_z = 0.24{keys} }}");
+        solved(&on_cross(&format!("{own}\n{moment}")))
+    };
+    let springs = solved(&on_cross(&format!(
+        r#"
+s = {{ type = "torsion_spring", joint = "u", coordinate = "angle2", stiffness = 0.2 }}
+r = {{ type = "torsion_spring", joint = "u", coordinate = "angle", stiffness = 0.24 }}
+{moment}
+"#
+    )));
+    // M_z over the stiffness of the first pin; the part of M_x along the second pin, which it turns.
+    let of = |about_x: f64, about_z: f64| {
+        let first = (4.0 / about_z).to_radians();
+        [first, (3.0 * first.cos() / about_x).to_radians()]
+    };
+    let [first, second] = of(0.2, 0.24);
+    let rigid = elastic("");
+    let stiff = elastic(", x = 1e7, y = 1e7, z = 1e7, about_y = 1e7");
+    for (a, expected) in [("a1", first), ("a2", second)] {
+        near(value(&rigid, 2, a), expected, SAME, a);
+        near(value(&springs, 2, a), expected, SAME, a);
+        // The turn between the pins is some 1e-7 deg.
+        near(value(&stiff, 2, a), expected, 1e-7, a);
+    }
+    let half = r#"e = { type = "elastic_joint", joint = "u", about_x = 0.1, about_z = 0.12 }"#;
+    let half = solved(&on_cross(&format!("{half}\n{moment}")));
+    for (a, expected) in ["a1", "a2"].into_iter().zip(of(0.1, 0.12)) {
+        near(value(&half, 2, a), expected, SAME, a);
+    }
+}
+
+#[test]
+fn an_elastic_cross_has_the_potential_of_its_own_angles() {
+    let forces = r#"
+e = { type = "elastic_joint", joint = "u", x = 50, y = 40, z = 60, about_x = 0.6, about_y = 0.9, about_z = 0.8, matrix = MATRIX }
+f = { type = "force", at = "p", force = 100, along = [1, 2, -2], law = "t" }
+"#;
+    let zero = "[0, 0, 0, 0, 0, 0]";
+    let matrix = format!("[{zero}, {zero}, {zero}, [0, 0, 0, 0, 0, 0.2], {zero}, [0, 0, 0, 0.2, 0, 0]]");
+    let text = on_cross(&forces.replace("MATRIX", &matrix));
+    // By an independent program, which minimises the energy over displacements and turns about z, y and x.
+    let expected = [0.170_915_416_991_558, 0.111_050_175_332_088, -0.090_277_310_115_299];
+    for formulation in [Formulation::Relative, Formulation::Absolute] {
+        let solution = solved_by(&text, formulation);
+        for (name, expected) in ["p.x", "p.y", "p.z"].into_iter().zip(expected) {
+            near(value(&solution, 2, name), expected, SAME, name);
+        }
+        near(value(&solution, 2, "a1"), 10.957_793_156_944_75_f64.to_radians(), SAME, "a1");
+        near(value(&solution, 2, "a2"), -5.312_173_963_718_845_f64.to_radians(), SAME, "a2");
+    }
+    let with_design = format!("{text}[design]\np = {{ move = \"p\", along = \"xyz\" }}\n").replace(
+        "points = { p = { body = \"b\", at = [200, 80, -50] } }",
+        "hardpoints = { p = [200, 80, -50] }\npoints = { p = { body = \"b\", at = \"p\" } }",
+    );
+    verify_all(&model(&with_design));
+}
+
+#[test]
+fn the_pins_of_a_cross_are_rigid_where_nothing_gives_between_them() {
+    let elastic = r#"e = { type = "elastic_joint", joint = "u", about_x = 0.2, about_z = 0.24 }"#;
+    let drivers = r#"
+[drivers]
+d1 = { joint = "u", coordinate = "angle", law = "30" }
+d2 = { joint = "u", coordinate = "angle2", law = "20" }
+"#;
+    let compliance = r#"c = { type = "compliance", of = "px", at = "p", along = "y" }"#;
+    let text = on_cross(elastic)
+        .replace("[equilibrium]", drivers)
+        .replace("[measures]", &format!("[measures]\n{compliance}"));
+    let solution = solved(&text);
+    for k in 0..3 {
+        assert_eq!(value(&solution, k, "c"), 0.0);
+    }
+}
+
+#[test]
+fn an_elastic_constant_velocity_joint_that_is_cut_keeps_its_constraint() {
+    let joint = r#"type = "constant_velocity", axis = [1, 0.2, 0.1], axis2 = [1, -0.3, 0.2]"#;
+    let acts = format!(
+        "e = {{ type = \"elastic_joint\", joint = \"J\", x = 700, y = 700, z = 500, about_x = 7, about_y = 7 }}\n\
+         [drivers]\n{}",
+        IDLE.replace("r =", "d =")
+    );
+    let text = |cut: [bool; 2]| {
+        let tilt = "axis = { tilt = \"J\", about = \"x\" }\n";
+        arm(cut, joint, &acts)
+            .replace(
+                "\"coordinate\", joint = \"J\", coordinate = \"angle\"",
+                "\"position\", point = \"b\", along = \"x\"",
+            )
+            .replace(tilt, "")
+    };
+    let texts = [text([false, true]), text([true, false])];
+    let [first, second] = texts.each_ref().map(|text| solved(text));
+    for k in 0..5 {
+        for name in ["b.x", "b.y", "b.z", "x", "moment"] {
+            near(value(&second, k, name), value(&first, k, name), SAME, name);
+        }
+    }
+    verify_all(&model(&texts[0]));
+}
+
 #[test]
 fn elastic_moments_count_whole_turns() {
     let text = |forces: &str, equilibrium: &str, more: &str| {
@@ -224,6 +354,14 @@ measures = {{ load = {{ type = "driver_force", driver = "d" }} }}
     x = 1, y = 1, z = 1, about_z = 0.5 }"#
             .replace('\n', "");
     let both = format!("{rest}\n{bushing}");
+    let cross = text(elastic, "[equilibrium]", "")
+        .replace("\"revolute\"", "\"universal\"")
+        .replace("law =", "coordinate = \"angle\", law =");
+    let held = "s = { type = \"torsion_spring\", joint = \"J\", coordinate = \"angle2\", stiffness = 1 }\n";
+    let solution = solved(&format!("{cross}{held}"));
+    for k in 0..=8 {
+        near(value(&solution, k, "load"), 25.0 * k as f64, 1e-9, &format!("cross {k}"));
+    }
     for (forces, equilibrium, more) in [
         (elastic, "[equilibrium]", ""),
         (&both, "[equilibrium]", ""),

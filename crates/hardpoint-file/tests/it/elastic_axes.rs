@@ -143,6 +143,27 @@ fn the_whole_model_turned_gives_the_same_answer() {
 }
 
 #[test]
+fn elastic_joints_rest_in_the_design_configuration_without_loads() {
+    for kind in elastic_types() {
+        let loaded = on_elastic_joint(kind, Mat3::IDENTITY, true);
+        let is_load = |line: &&str| line.starts_with("push") || line.starts_with("twist");
+        let text: String = loaded.lines().filter(|l| !is_load(l)).map(|l| format!("{l}\n")).collect();
+        let model = model_of(&text);
+        for formulation in [Formulation::Relative, Formulation::Absolute] {
+            let solution = solved_by(&model, formulation);
+            for (name, at) in ["p.x", "p.y", "p.z"].into_iter().zip([0.5, 0.1, 0.25]) {
+                let found = value(&solution, 0, name);
+                assert!((found - at).abs() <= SAME, "{}: {name} {found}", kind.name);
+            }
+            for name in ["force", "moment"] {
+                // Of stiffnesses of 1e3 N/m.
+                assert!(value(&solution, 0, name).abs() <= 1e3 * SAME, "{}: {name}", kind.name);
+            }
+        }
+    }
+}
+
+#[test]
 fn axes_that_differ_need_their_directions() {
     for kind in elastic_types() {
         let text = on_elastic_joint(kind, Mat3::IDENTITY, false);
@@ -440,4 +461,70 @@ fn slopes_report_what_cannot_move_together() {
         ),
     ];
     snapshot_all("slopes_together_faults", &texts);
+}
+
+#[test]
+fn an_elastic_ball_of_a_rod_that_may_spin_gives_along_its_own_axes() {
+    let text = |elastic: &str| {
+        format!(
+            r#"
+name = "rod"
+units = {{ length = "mm", angle = "deg" }}
+bodies = {{ b = {{}}, rod = {{}} }}
+[joints]
+g = {{ type = "translational", bodies = ["ground", "b"], at = [0, 0, 0], axis = "x" }}
+s1 = {{ type = "spherical", bodies = ["ground", "rod"], at = [-100, -100, -50] }}
+s2 = {{ type = "spherical", bodies = ["b", "rod"], at = [0, 0, 0] }}
+[points]
+p = {{ body = "b", at = [0, 0, 0] }}
+r = {{ body = "rod", at = [-100, -100, -50] }}
+[forces]
+e = {{ type = "elastic_joint", joint = "{elastic}", x = 100, y = 1000, z = 300 }}
+f = {{ type = "force", at = "p", force = 1000, along = "x", law = "t" }}
+[equilibrium]
+[time]
+at = [0, 1]
+"#
+        )
+    };
+    // The force along x is on the joint at either end of the rod: 1000 N over 100 N/mm.
+    let first = solved(&text("s1"));
+    assert!((value(&first, 1, "r.x") + 0.09).abs() <= SAME, "{}", value(&first, 1, "r.x"));
+    // Up to the turning of the axes, both ends give alike.
+    let second = solved(&text("s2"));
+    let [a, b] = [&first, &second].map(|solution| value(solution, 1, "p.x"));
+    assert!((a - b).abs() <= SAME && a > 0.01, "{a} {b}");
+}
+
+#[test]
+fn a_rod_spins_as_its_elastic_ball_holds_it() {
+    let text = r#"
+name = "rod"
+units = { length = "mm", angle = "deg" }
+bodies = { b = {}, rod = {} }
+[joints]
+s1 = { type = "spherical", bodies = ["ground", "rod"], at = [0, 0, 0] }
+g = { type = "revolute", bodies = ["ground", "b"], at = [100, 0, 0], axis = "x" }
+s2 = { type = "spherical", bodies = ["b", "rod"], at = [100, 0, 0] }
+[drivers]
+d = { joint = "g", law = "30*t" }
+[points]
+p = { body = "rod", at = [50, 20, 0] }
+[forces]
+e = { type = "elastic_joint", joint = "s1", x = 100, y = 1000, z = 300, about_x = 5, about_y = 6, about_z = 7 }
+[equilibrium]
+[measures]
+load = { type = "driver_force", driver = "d" }
+[time]
+at = [0, 1]
+"#;
+    let [s1, s2] = ["s1", "s2"].map(|name| text.lines().find(|line| line.starts_with(name)).unwrap());
+    let swapped = text.replace(s1, "S1").replace(s2, s1).replace("S1", s2);
+    for text in [text, &swapped] {
+        let solution = solved(text);
+        for (name, at) in [("p.x", 0.05), ("p.y", 0.02), ("p.z", 0.0), ("load", 0.0)] {
+            let found = value(&solution, 1, name);
+            assert!((found - at).abs() <= SAME, "{name}: {found}");
+        }
+    }
 }

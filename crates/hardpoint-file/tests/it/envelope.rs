@@ -243,3 +243,61 @@ shapes.wire = { body = "slider", ring = [50, 0, 0], axis = "y", radius = 10, rou
     assert!(refused.message.contains("`wire`") && refused.message.contains("volume"), "{refused}");
     assert!(Request::of(&model, Overrides { margin: Some(1e-3), ..of("wire") }).is_ok());
 }
+
+/// An arm that turns about the z axis of the ground.
+fn turning(law: &str, steps: usize, shape: &str) -> Model {
+    let text = format!(
+        r#"
+name = "turning"
+units = {{ length = "mm", angle = "deg" }}
+time = {{ end = 1, steps = {steps} }}
+bodies = {{ arm = {{}} }}
+joints.pivot = {{ type = "revolute", bodies = ["ground", "arm"], at = [0, 0, 0], axis = "z" }}
+drivers.motor = {{ joint = "pivot", law = "{law}" }}
+shapes.s = {{ body = "arm", {shape} }}
+"#
+    );
+    parse(&text, "turning.toml").unwrap_or_else(|e| panic!("{e}")).model
+}
+
+#[test]
+fn motions_that_repeat_themselves_between_output_times_are_swept() {
+    let ball = "sphere = [40, 0, 7], radius = 10";
+    // Solids of revolution by Pappus: a torus, a part of it with round ends, and a disc with a round rim.
+    let torus = 2.0 * PI * PI * 40.0 * 100.0;
+    let arc = torus * 60.0 / 360.0 + 4.0 / 3.0 * PI * 1000.0;
+    let disc = PI * 1600.0 * 6.0 + PI * 9.0 / 2.0 * 2.0 * PI * (40.0 + 4.0 * 3.0 / (3.0 * PI));
+    let cases = [
+        ("720*t", 1, ball, torus),
+        ("30*sin(16*pi*t)", 4, ball, arc),
+        ("30*(1 - cos(16*pi*t))", 4, ball, arc),
+        ("360*t", 7, "capsule = [[-40, 0, 0], [40, 0, 0]], radius = 3", disc),
+    ];
+    for (law, steps, shape, exact) in cases {
+        let model = turning(law, steps, shape);
+        let request = Overrides { shape: "s".into(), error: Some(1e-3), ..Overrides::default() };
+        let found = envelope_of(&model, request);
+        assert!(found.is_within_error, "{law}: {} {}", found.between_poses, found.surface.deviation);
+        let within = found.surface.area() * found.error * 1e9;
+        let volume = found.surface.volume() * 1e9;
+        assert!((volume - exact).abs() < within && volume > 0.9 * exact, "{law}: {volume} {exact} {within}");
+    }
+}
+
+#[test]
+fn the_error_of_a_turning_box_includes_what_its_corners_leave_out() {
+    // A full turn sweeps a cylinder of the radius of its corners.
+    let radius = 10.0_f64.hypot(15.0) * 1e-3;
+    for steps in [1, 4, 7] {
+        let model = turning("360*t", steps, "box = [20, 30, 10], frame = { position = [0, 0, 3] }");
+        let request = Overrides { shape: "s".into(), error: Some(1.5e-3), ..Overrides::default() };
+        let found = envelope_of(&model, request);
+        assert!(found.is_within_error, "{steps}: {} {}", found.between_poses, found.surface.deviation);
+        let side = found.surface.vertices.iter().filter(|p| (p.z - 0.003).abs() < 0.003);
+        let least = side.map(|p| p.x.hypot(p.y)).fold(f64::INFINITY, f64::min);
+        let stated = found.between_poses + found.surface.deviation;
+        assert!(radius - least <= stated, "{steps}: {} {stated}", radius - least);
+        let (volume, exact) = (found.surface.volume(), PI * radius * radius * 0.01);
+        assert!((volume - exact).abs() < found.surface.area() * found.error, "{steps}: {volume} {exact}");
+    }
+}

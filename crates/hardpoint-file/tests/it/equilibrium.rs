@@ -1094,3 +1094,148 @@ fn second_derivatives_are_symmetric_and_those_of_solved_designs() {
         }
     }
 }
+
+/// A slider-crank, whose slider is displaced by 200 mm at 0.5 s, with an elastic joint that no load opens.
+fn slider_crank(times: &str) -> String {
+    format!(
+        r#"
+name = "crank"
+units = {{ length = "mm", angle = "deg" }}
+hardpoints = {{ A = [0, 0, 0], B = [0, 100, 0], C = [150, 0, 0] }}
+bodies = {{ crank = {{}}, slider = {{}}, mass = {{}} }}
+[joints]
+A = {{ type = "revolute", bodies = ["ground", "crank"], at = "A", axis = "z" }}
+rod = {{ type = "distance", bodies = ["crank", "slider"], at = ["B", "C"] }}
+slider = {{ type = "translational", bodies = ["ground", "slider"], at = "C", axis = "x" }}
+mass = {{ type = "fixed", bodies = ["crank", "mass"], at = "B" }}
+[forces]
+mass = {{ type = "elastic_joint", joint = "mass", about_z = 1 }}
+[equilibrium]
+[drivers]
+d = {{ joint = "slider", law = "200*sin(pi*t)" }}
+[measures]
+angle = {{ type = "coordinate", joint = "A" }}
+[metrics]
+middle = {{ of = "angle", take = "value", at = 0.5 }}
+[time]
+{times}
+"#
+    )
+}
+
+/// A truss of von Mises on two springs of 50 N/mm, 600 mm wide and 80 mm high, under these laws of loads down in N.
+fn shallow_truss(laws: &[&str], times: &str) -> String {
+    let load = |(k, law): (usize, &&str)| {
+        format!("load{k} = {{ type = \"force\", at = \"P\", force = 1, along = \"-z\", law = \"{law}\" }}\n")
+    };
+    let loads: String = laws.iter().enumerate().map(load).collect();
+    format!(
+        r#"
+name = "truss"
+units = {{ length = "mm", angle = "deg" }}
+[hardpoints]
+A = [-300, 0, 0]
+B = [300, 0, 0]
+P = [0, 0, 80]
+[bodies]
+apex = {{}}
+[joints]
+plane = {{ type = "planar", bodies = ["ground", "apex"], at = "P", axis = "y" }}
+upright = {{ type = "orientation", bodies = ["ground", "apex"] }}
+[points]
+P = {{ body = "apex", at = "P" }}
+[forces]
+left = {{ type = "spring", from = {{ body = "ground", at = "A" }}, to = {{ body = "apex", at = "P" }}, stiffness = 50 }}
+right = {{ type = "spring", from = {{ body = "ground", at = "B" }}, to = {{ body = "apex", at = "P" }}, stiffness = 50 }}
+{loads}[equilibrium]
+[metrics]
+middle = {{ of = "P.z", take = "value", at = 0.5 }}
+lowest = {{ of = "P.z", take = "min" }}
+[time]
+{times}
+"#
+    )
+}
+
+/// Force in N that holds that truss at this height in mm; and its limit load, at `L^3 = L_o w^2`.
+fn load_of_shallow_truss(z: f64) -> f64 {
+    let [long, short] = [80.0_f64, z].map(|z| z.hypot(300.0));
+    2.0 * 50.0 * (long - short) * z / short
+}
+
+fn limit_of_shallow_truss() -> f64 {
+    let length = (80.0_f64.hypot(300.0) * 300.0 * 300.0).cbrt();
+    load_of_shallow_truss((length * length - 300.0 * 300.0).sqrt())
+}
+
+/// Output times that a half sine leads beyond between them, and others.
+const ROUND_A_TURN: [&str; 7] = [
+    "at = [0, 1]",
+    "at = [0, 0.5, 1]",
+    "at = [0, 0.1, 0.9]",
+    "at = [0, 0.1, 0.2, 0.3, 0.5, 0.9]",
+    "at = [0, 0.05, 0.1, 0.15, 0.85, 0.9, 0.95, 1]",
+    "end = 1\nsteps = 7",
+    "end = 1\nsteps = 41",
+];
+
+#[test]
+fn a_driver_that_turns_between_output_times_ends_the_run_where_it_cannot_be_reached() {
+    // Crank and rod are in line at sqrt(100^2 + 150^2) + 100 mm.
+    let reach = 100.0_f64.hypot(150.0) + 100.0 - 150.0;
+    let expected = (reach / 200.0).asin() / std::f64::consts::PI;
+    for times in ROUND_A_TURN {
+        let stop = Analysis::new(&file(&slider_crank(times)).model).unwrap().run().stop.expect(times);
+        assert_eq!(stop.kind, StopKind::NoEquilibrium, "{times}");
+        near(stop.failed_time, expected, TIME_OF_LIMIT, times);
+    }
+}
+
+#[test]
+fn a_load_that_turns_between_output_times_ends_the_run_at_the_limit_load() {
+    let limit = limit_of_shallow_truss();
+    near(limit, 105.758297, 1e-6, "limit load");
+    let expected = (limit / 200.0).asin() / std::f64::consts::PI;
+    for times in ROUND_A_TURN {
+        let model = file(&shallow_truss(&["200*sin(pi*t)"], times)).model;
+        let stop = Analysis::new(&model).unwrap().run().stop.expect(times);
+        assert_eq!(stop.kind, StopKind::NoEquilibrium, "{times}");
+        near(stop.failed_time, expected, TIME_OF_LIMIT, times);
+    }
+    // None of these loads turns, but their sum does: 450 (t - t^2).
+    let expected = 0.5 - (0.25 - limit / 450.0).sqrt();
+    for times in ["at = [0, 1]", "at = [0, 0.2, 1]", "end = 1\nsteps = 7"] {
+        let model = file(&shallow_truss(&["450*t", "-450*t^2"], times)).model;
+        let stop = Analysis::new(&model).unwrap().run().stop.expect(times);
+        assert_eq!(stop.kind, StopKind::NoEquilibrium, "{times}");
+        near(stop.failed_time, expected, TIME_OF_LIMIT, times);
+    }
+}
+
+#[test]
+fn below_the_limit_load_output_times_and_metrics_do_not_depend_on_each_other() {
+    let half_sine = |t: f64| 100.0 * (std::f64::consts::PI * t).sin();
+    let parabola = |t: f64| 400.0 * (t - t * t);
+    type Load = fn(f64) -> f64;
+    let cases: [(&[&str], Load); 2] = [(&["100*sin(pi*t)"], half_sine), (&["400*t", "-400*t^2"], parabola)];
+    for (laws, load) in cases {
+        for times in ROUND_A_TURN {
+            let model = file(&shallow_truss(laws, times)).model;
+            let solution = Analysis::new(&model).unwrap().run();
+            assert!(solution.stop.is_none(), "{times}: {:?}", solution.stop);
+            for (k, t) in solution.motion.times.iter().enumerate() {
+                let z = 1e3 * value(&solution, k, "P.z");
+                assert!(z > 45.0, "the stable branch");
+                near(load_of_shallow_truss(z), load(*t), 1e-7, &format!("{laws:?}, t = {t}, {times}"));
+            }
+            let [middle, lowest] = &metrics(&model, &solution)[..] else { panic!("two metrics") };
+            let [z, least] = [middle, lowest].map(|metric| 1e3 * metric.value.unwrap());
+            // The last output time may be before the middle.
+            if *solution.motion.times.last().unwrap() >= 0.5 {
+                near(load_of_shallow_truss(z), 100.0, 1e-7, times);
+                let error = lowest.error.map_or(1e-9, |error| 1e3 * error + 1e-9);
+                near(least, z, error, times);
+            }
+        }
+    }
+}

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use hardpoint::model::Model;
+use hardpoint::Analysis;
+use hardpoint::model::{BodyId, Model};
 use hardpoint_file::{ModelFile, parse, parse_with, read};
 
 use crate::diagnostics::diagnosed;
@@ -123,7 +124,7 @@ fn a_vehicle_has_its_axles_and_these_their_corners() {
     assert_eq!(model.bodies.len(), 1 + 6);
     let variables = names(model.variables.iter().map(|v| v.name.as_str()).collect());
     assert!(variables.contains(&"rear_left_pivot".to_owned()), "{variables:?}");
-    let solution = hardpoint::Analysis::new(model).unwrap().run();
+    let solution = Analysis::new(model).unwrap().run();
     let value = |name: &str| {
         let m = model.measures.iter().position(|m| m.name == name).unwrap();
         solution.measured.value(4, m)[0]
@@ -218,4 +219,56 @@ fn mistakes_in_included_files() {
     }
     let error = parse(AXLE, "axle.toml").unwrap_err();
     assert_eq!(error.list()[0].code, "HP0111", "{error}");
+}
+
+/// Coordinates of a vehicle over its motion, from a file with this text.
+fn heights(folder: &Path, text: &str) -> Vec<[f64; 3]> {
+    std::fs::create_dir_all(folder).unwrap();
+    std::fs::write(folder.join("saved.toml"), text).unwrap();
+    let file = opened(folder, "saved.toml");
+    let solution = Analysis::new(&file.model).unwrap().run();
+    let bodies = 1..file.model.bodies.len();
+    (0..solution.motion.len())
+        .flat_map(|k| bodies.clone().map(move |b| (k, b)))
+        .map(|(k, b)| solution.body(k, BodyId(b)).r.to_array())
+        .collect()
+}
+
+#[test]
+fn a_model_saved_in_another_folder_reads_the_same_files() {
+    let folder = vehicle();
+    let (models, axles) = (folder.path(), folder.path().join("axles"));
+    let axle = opened(&axles, "axle.toml");
+    let text = axle.text();
+    let own = heights(&axles, text);
+    // In the same folder, the text is the same, by any path of the folder.
+    assert_eq!(axle.text_for(text, Some(&axles), &models.join("axles/../axles")).unwrap(), text);
+    // Above it, names are longer; all else is unchanged.
+    let above = axle.text_for(text, Some(&axles), models).unwrap();
+    assert_eq!(above, text.replace("\"corner.toml\"", "\"axles/corner.toml\""));
+    assert_eq!(heights(models, &above), own);
+    // In a folder of its own, the files are missing, and then have other contents, and then are copies.
+    let other = models.join("other");
+    let refused = |why: &str| {
+        let found = axle.text_for(text, Some(&axles), &other).unwrap_err();
+        let [d] = found.list() else { panic!("{found}") };
+        let all = format!("{} {}", d.message, d.notes.join(" "));
+        assert!(d.code == "HP0505" && all.contains(why), "{all}");
+        assert!(d.help.as_deref().is_some_and(|help| help.contains("copy `")), "{d:?}");
+    };
+    refused("it reads `corner.toml`, which is not there");
+    std::fs::create_dir(&other).unwrap();
+    std::fs::copy(axles.join("corner.toml"), other.join("corner.toml")).unwrap();
+    refused("it reads `lift.csv`, which is not there");
+    std::fs::write(other.join("lift.csv"), "0, 0\n1, 90\n").unwrap();
+    refused("the `lift.csv` there has other contents");
+    std::fs::copy(axles.join("lift.csv"), other.join("lift.csv")).unwrap();
+    let copied = axle.text_for(text, Some(&axles), &other).unwrap();
+    assert_eq!(copied, text);
+    assert_eq!(heights(&other, &copied), own);
+    // A text without a folder has the texts of its files, but not the files.
+    let sent = parse_with(text, "axle.toml", &axle.texts).unwrap();
+    assert_eq!(sent.text_for(text, None, &other).unwrap(), text);
+    let found = sent.text_for(text, None, models).unwrap_err();
+    assert!(found.list()[0].message.contains("it reads `corner.toml`"), "{found}");
 }

@@ -446,3 +446,85 @@ fn a_spring_in_equilibrium_reaches_its_limit_where_the_moments_balance() {
     assert_near(solution.stop.unwrap().failed_time, time, 1e-10, "stop");
     assert_eq!(solution.motion.len(), 4);
 }
+
+/// A slider in equilibrium that is displaced by `10 sin(pi t)` mm, by a driver or by a force on a spring, with a limit
+/// at 8 mm.
+fn slider_at_rest(by_force: bool, stop: bool, times: &str) -> Model {
+    let moved = if by_force {
+        "spring = { type = \"joint_spring\", joint = \"slide\", stiffness = 5 }\n\
+         load = { type = \"force\", at = { body = \"ram\", at = [0, 0, 0] }, force = 50, along = \"x\", law = \"sin(pi*t)\" }"
+    } else {
+        "end = { type = \"elastic_joint\", joint = \"end\", x = 10 }\n\
+         [drivers]\nram = { joint = \"slide\", law = \"10*sin(pi*t)\" }"
+    };
+    model_of(&format!(
+        "name = \"slider\"\nunits = {{ length = \"mm\", angle = \"deg\" }}\n\
+         [bodies]\nram = {{}}\ntip = {{}}\n\
+         [joints]\nslide = {{ type = \"translational\", bodies = [\"ground\", \"ram\"], at = [0, 0, 0], axis = \"x\", \
+         limits = {{ displacement = {{ max = 8, stop = {stop} }} }} }}\n\
+         end = {{ type = \"fixed\", bodies = [\"ram\", \"tip\"], at = [0, 0, 0] }}\n\
+         [forces]\n{moved}\n[equilibrium]\n[time]\n{times}\n"
+    ))
+}
+
+#[test]
+fn limits_of_equilibria_are_located_between_output_times() {
+    let leaves = 0.8_f64.asin() / PI;
+    // Without rates a crossing is as exact as the motion is near it, and an extremum to the square of that.
+    let (time, value) = (2e-11, 1e-13);
+    for by_force in [true, false] {
+        for times in ["at = [0, 1]", "at = [0, 0.5, 1]", "at = [0, 0.1, 0.9, 1]", "end = 1\nsteps = 7"] {
+            let what = format!("force: {by_force}, {times}");
+            let model = slider_at_rest(by_force, false, times);
+            let analysis = Analysis::new(&model).unwrap();
+            let [found] = &analysis.joint_limits(&[])[..] else { panic!("one limit") };
+            let crossings: Vec<_> = found.crossings.iter().map(|c| (c.end, c.leaves)).collect();
+            assert_eq!(crossings, [(LimitEnd::Max, true), (LimitEnd::Max, false)], "{what}");
+            assert_near(found.crossings[0].time, leaves, time, &what);
+            assert_near(found.crossings[1].time, 1.0 - leaves, time, &what);
+            assert_near(found.greatest.value, 0.01, value, &what);
+            assert_near(found.greatest.time, 0.5, 1e-6, &what);
+            let solution = analysis.run();
+            assert!(solution.stop.is_none());
+            let metric = &metrics(&model, &solution)[0];
+            let error = metric.error.unwrap_or(value);
+            assert_near(metric.value.unwrap(), 0.01, error, &format!("metric, {what}"));
+
+            let model = slider_at_rest(by_force, true, times);
+            let analysis = Analysis::new(&model).unwrap();
+            let stop = analysis.run().stop.unwrap_or_else(|| panic!("{what}"));
+            let kind = StopKind::JointLimit { limit: 0, end: LimitEnd::Max, begins_beyond: false };
+            assert_eq!(stop.kind, kind, "{what}");
+            assert_near(stop.failed_time, leaves, time, &what);
+            let [found] = &analysis.joint_limits(&[])[..] else { panic!("one limit") };
+            assert_near(found.greatest.value, 0.008, 1e-12, &what);
+        }
+    }
+}
+
+#[test]
+fn a_limit_of_an_equilibrium_that_is_hardly_exceeded_is_found() {
+    // The peak of 10 mm is 1e-4 mm beyond the limit, at a time that no division of the motion meets.
+    let text = |max: f64| {
+        format!(
+            "name = \"slider\"\nunits = {{ length = \"mm\", angle = \"deg\" }}\n[bodies]\nram = {{}}\n\
+             [joints]\nslide = {{ type = \"translational\", bodies = [\"ground\", \"ram\"], at = [0, 0, 0], axis = \"x\", \
+             limits = {{ displacement = {{ max = {max} }} }} }}\n\
+             [forces]\nspring = {{ type = \"joint_spring\", joint = \"slide\", stiffness = 5 }}\n\
+             load = {{ type = \"force\", at = {{ body = \"ram\", at = [0, 0, 0] }}, force = 50, along = \"x\", \
+             law = \"sin(pi*t/0.77)\" }}\n[equilibrium]\n[time]\nat = [0, 1]\n"
+        )
+    };
+    let ratio = 0.99999_f64;
+    let leaves = 0.77 * ratio.asin() / PI;
+    let model = model_of(&text(10.0 * ratio));
+    let [found] = &ranges(&model, Formulation::Relative)[..] else { panic!("one limit") };
+    let times: Vec<f64> = found.crossings.iter().map(|c| c.time).collect();
+    assert_eq!(times.len(), 2, "{found:?}");
+    // The rate is small there.
+    assert_near(times[0], leaves, 1e-9, "leaves");
+    assert_near(times[1], 0.77 - leaves, 1e-9, "returns");
+    let model = model_of(&text(10.0001));
+    let [found] = &ranges(&model, Formulation::Relative)[..] else { panic!("one limit") };
+    assert_eq!(found.crossings, []);
+}

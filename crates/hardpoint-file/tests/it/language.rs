@@ -220,6 +220,51 @@ time = { end = 1.0, steps = 2 }
 }
 
 #[test]
+fn names_of_planar_models_follow_their_hardpoints_and_bodies() {
+    let text = r#"
+name = "four-bar"
+units = { length = "mm", angle = "deg" }
+planar = "xy"
+hardpoints = { A = [0, 0], B = [40, 200], C = [360, 600], D = [400, 0], "P" = [200, 400], Q = [300, 700] }
+bodies = { ground = ["A", "D"], crank = ["A", "B"], coupler = ["B", "C", "P"], rocker = ["C", "D"], arm = ["C", "Q"] }
+drivers.motor = { joint = "A", law = "360*t" }
+drivers.other = { joint = "C_arm", law = "0" }
+[measures]
+height = { type = "position", point = "P", along = "y" }
+turn = { type = "coordinate", joint = "C_arm" }
+half = { type = "expression", expression = "height/2" }
+[metrics]
+most = { of = "turn", take = "max" }
+[design]
+P = { move = "P", along = "xy", bounds = [-5, 5] }
+[optimize]
+variables = ["P_x", "P_y"]
+goals = { most = {} }
+"#;
+    hardpoint_file::parse(text, "m.toml").unwrap_or_else(|e| panic!("{e}"));
+    let document = Document::new(text);
+    for (needle, section, count) in [
+        ("point = \"P", "hardpoints", 4),
+        ("move = \"P", "hardpoints", 4),
+        ("[\"P", "design", 3),
+        ("joint = \"C", "hardpoints", 6),
+        ("\"C_arm", "bodies", 3),
+    ] {
+        let name = document.name_at(after(text, needle)).unwrap_or_else(|| panic!("{needle}"));
+        assert_eq!((name.section, document.references(&name).len()), (section, count), "{needle}");
+        for reference in document.references(&name) {
+            let other =
+                renamed(text, reference.at.end, "zz9", None).unwrap_or_else(|why| panic!("{needle}: {why}"));
+            assert_eq!(other.matches("zz9").count(), count, "{other}");
+        }
+    }
+    let points = completed(&text.replace("point = \"P\"", "point = \"|\""));
+    assert_eq!(labels(&points), ["P", "Q"]);
+    let joints = completed(&text.replace("joint = \"A\"", "joint = \"|\""));
+    assert_eq!(labels(&joints), ["A", "B", "C", "D"]);
+}
+
+#[test]
 fn keys_are_those_of_the_table_that_are_missing() {
     let found = completed("[joints.hinge]\ntype = \"revolute\"\n|\n\n[bodies]\narm = {}\n");
     let labels = labels(&found);

@@ -430,6 +430,42 @@ fn newton_euler(model: &Model, k: usize, s: &BodyState) -> [Vec3; 4] {
 /// Wrenches on a body, and powers, balance to this part of the largest of them.
 const BALANCED: f64 = 1e-12;
 
+/// The joint alone carries the weight, by its thread or by its driver, and no moment about its axis remains.
+#[test]
+fn a_screw_carries_by_its_thread() {
+    for coordinate in ["angle", "displacement"] {
+        let text = format!(
+            r#"
+name = "a weight on a screw"
+units = {{ length = "mm", angle = "deg" }}
+hardpoints = {{ A = [0, 0, 0] }}
+bodies = {{ nut = {{}} }}
+gravity = {{ along = "-z" }}
+time = {{ at = [0, 1] }}
+joints.s = {{ type = "screw", bodies = ["ground", "nut"], at = "A", axis = "z", lead = 10 }}
+drivers.d = {{ joint = "s", coordinate = "{coordinate}", law = "90*t" }}
+masses.w = {{ type = "rigid", centre = {{ body = "nut", at = "A" }}, mass = 10 }}
+[measures]
+axial = {{ type = "reaction", joint = "s", part = "axial" }}
+z = {{ type = "reaction", joint = "s", part = "force_z" }}
+torque = {{ type = "reaction", joint = "s", part = "torque" }}
+"#
+        );
+        for formulation in [Formulation::Relative, Formulation::Absolute] {
+            let model = file(&text).model;
+            let solution = Analysis::with(&model, formulation).unwrap().run();
+            for k in 0..2 {
+                let found =
+                    |name: &str| solution.measured.value(k, solution.measured.index(name).unwrap())[0];
+                for (name, expected) in [("axial", 98.0665), ("z", 98.0665), ("torque", 0.0)] {
+                    let off = (found(name).abs() - expected).abs();
+                    assert!(off < 1e-10, "{coordinate} {formulation:?}: {name} {}", found(name));
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn every_model_of_the_gallery_balances_its_wrenches_and_its_power_in_both_formulations() {
     let mut seen = 0;

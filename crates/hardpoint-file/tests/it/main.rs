@@ -6,6 +6,7 @@ mod calibrations;
 mod cases;
 mod clearance;
 mod couplers;
+mod designs;
 mod dexterity;
 mod diagnostics;
 mod docs;

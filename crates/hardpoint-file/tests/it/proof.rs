@@ -197,3 +197,55 @@ fn two_hundred_four_bars_are_proved_and_greater_claims_are_refused() {
     );
     assert!(counts[most - 1] <= 200, "{counts:?}");
 }
+
+/// A spatial four-bar with two output times, between which its crank turns there and back.
+const FEW: &str = r#"
+name = "few"
+units={length="mm",angle="deg"}
+time={end=0.3,steps=1}
+[hardpoints]
+A=[-185.9053351578918, 326.09864224899655, 77.92621685936294]
+B=[-177.63380259858425, 320.74501937448406, 164.28453907933232]
+C=[-182.67072196325253, 279.17032476371037, 123.90930392316115]
+D=[-178.14324828872395, 229.12722423017829, 184.0108992338451]
+[bodies]
+crank={}
+coupler={}
+rocker={}
+[joints]
+A={type="revolute",bodies=["ground","crank"],at="A",axis=[-0.9949405551565824, 0.026403368842365826, 0.09693375995227671]}
+B={type="spherical",bodies=["crank","coupler"],at="B"}
+C={type="cylindrical",bodies=["coupler","rocker"],at="C",axis=[-0.9949405551565824, 0.026403368842365826, 0.09693375995227671]}
+D={type="revolute",bodies=["ground","rocker"],at="D",axis=[-0.9949405551565824, 0.026403368842365826, 0.09693375995227671]}
+[drivers]
+m={joint="A",law="-89.91209713436075*sin(8.901179185171081*t)^2"}
+[shapes]
+s0={body="ground",sphere=[-173.13557231124628, 305.7517209731764, 137.8407196091054],radius=4.760652742080526}
+s1={body="crank",sphere=[-186.9413137071664, 292.78308134545745, 116.38975311924541],radius=0.9239609467529631}
+s2={body="coupler",sphere=[-179.45807042223572, 337.24730094877333, 143.5677427002547],radius=3.3909623773923974}
+s3={body="rocker",capsule=[[-172.4129845859307, 242.5930262923182, 198.5690693417746],[-162.83803016064368, 242.34691286677912, 182.5372249086176]],radius=4.534747535905368}
+s4={body="ground",capsule=[[-195.67366652681267, 300.07885630877934, 125.55895781772512],[-184.67448379119546, 253.62823709949646, 161.9892528958281]],radius=4.314925590866034}
+[clearances]
+c0={between=["s0","s1"]}
+c1={between=["s0","s2"]}
+c2={between=["s0","s3"]}
+c3={between=["s1","s2"]}
+c4={between=["s1","s3"]}
+c5={between=["s1","s4"]}
+c6={between=["s2","s3"]}
+c7={between=["s2","s4"]}
+c8={between=["s3","s4"]}
+"#;
+
+#[test]
+fn positions_far_from_all_output_times_are_found() {
+    let model = model_of(FEW);
+    let analysis = Analysis::new(&model).unwrap();
+    let found = analysis.clearances(&[]);
+    let mut prover = analysis.clearance_prover(&[]).unwrap();
+    for pair in &found.pairs {
+        let least = pair.least().unwrap().at.distance[0];
+        let proof = prover.prove(pair.shapes, least - 1e-5 * model.size());
+        assert!(matches!(proof, ClearanceProof::Proved { .. }), "{:?}: {proof:?}", pair.shapes);
+    }
+}

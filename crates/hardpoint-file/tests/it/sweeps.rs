@@ -226,6 +226,34 @@ fn broken_lists_of_designs() {
     let sweeping = model.sweeping.unwrap();
     assert_eq!((sweeping.method, sweeping.listed.len()), (SweepMethod::Listed, 2));
     assert_eq!(sweeping.listed[1], [0.0015, -2.0_f64.to_radians()]);
+    for list in ["B_x [cm]; lean [rad]\n0; 0\n0.15; -0.0349\n", "lean [deg],B_x [m]\n0,0\n-1.9996,0.0015\n"] {
+        let listed = read(list).unwrap_or_else(|e| panic!("{e}")).model.sweeping.unwrap().listed;
+        let alone = read("B_x\n0\n").unwrap_or_else(|e| panic!("{e}"));
+        let given = alone.designs(&folder.path().join("other.csv"));
+        assert!(given.is_err());
+        std::fs::write(folder.path().join("other.csv"), list).unwrap();
+        let (ranges, given) =
+            alone.designs(&folder.path().join("other.csv")).unwrap_or_else(|e| panic!("{e}"));
+        std::fs::remove_file(folder.path().join("other.csv")).unwrap();
+        for rows in [listed, given] {
+            let of =
+                |name: &str| ranges.iter().position(|r| alone.model.variables[r.variable.0].name == name);
+            let [x, lean] = ["B_x", "lean"].map(|name| rows[1][of(name).unwrap()]);
+            assert!((x - 0.0015).abs() < 1e-15 && (lean + 0.0349).abs() < 1e-5, "{list:?} {rows:?}");
+        }
+    }
+    for (unit, words) in [("banana", "`B_x` is in `banana`, and it is a length"), ("deg", "it is a length")] {
+        let list = format!("lean,B_x [{unit}]\n0,1\n");
+        std::fs::write(folder.path().join("other.csv"), &list).unwrap();
+        let alone = read("B_x\n0\n").unwrap_or_else(|e| panic!("{e}"));
+        let given = alone.designs(&folder.path().join("other.csv")).unwrap_err();
+        for error in [given.to_string(), read(&list).unwrap_err().to_string()] {
+            assert!(
+                error.contains("HP0247") && error.contains(words) && error.contains("column 2"),
+                "{error}"
+            );
+        }
+    }
     let mut texts = String::new();
     for list in [
         "",

@@ -55,9 +55,13 @@ fn points_may_be_in_a_file() {
             .unwrap();
         TaskFile::read(&path).map_err(|e| Box::new(e.diagnostics().list()[0].clone()))
     };
-    for csv in
-        ["x,y\n0,0\n10,5\n20,0\n", "0;0\n10;5\n20;0\n", "\u{feff}\"x [mm]\",\"y [mm]\"\n0,0\n10,5\n20,0"]
-    {
+    for csv in [
+        "x,y\n0,0\n10,5\n20,0\n",
+        "0;0\n10;5\n20;0\n",
+        "\u{feff}\"x [mm]\",\"y [mm]\"\n0,0\n10,5\n20,0",
+        "# of a drawing\ny,x\n0,0\n5,10\n0,20\n",
+        "Y [cm];X [m]\n0;0\n0.5;0.01\n0;0.02\n",
+    ] {
         let task = read(csv).unwrap();
         let expected = vec![[0.0, 0.0], [0.01, 0.005], [0.02, 0.0]];
         let aim = TaskAim::Path { points: expected, is_closed: true, crank_angles: None, tolerance: None };
@@ -69,10 +73,26 @@ fn points_may_be_in_a_file() {
         ("0,0,0\n", "line 1 has 3 columns"),
         ("x,y\n0,a\n", "`a` is not a number"),
         ("x,y\n", "is empty"),
+        ("x,z\n0,0\n", "`z` is not a column"),
+        ("x\n0\n", "has no column `y`"),
+        ("x,y,x\n0,0,0\n", "`x` is the title of two columns"),
+        ("x,y [deg]\n0,0\n", "`y` is in `deg`, and it is a length"),
+        ("x [banana],y\n0,0\n", "`x` is in `banana`"),
     ] {
         let d = read(csv).unwrap_err();
         assert!(d.code == "HP0112" && d.message.contains(part), "{csv:?}: {}", d.message);
     }
+}
+
+#[test]
+fn columns_of_poses_are_found_by_their_names() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("t.toml");
+    std::fs::write(folder.path().join("p.csv"), "angle [rad],y,x [cm]\n0,0,0\n1.5,2,100\n0.5,4,0.3\n")
+        .unwrap();
+    std::fs::write(&path, format!("{HEAD}poses = \"p.csv\"")).unwrap();
+    let task = TaskFile::read(&path).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(task.aim, TaskAim::Poses(vec![[0.0; 3], [1.0, 0.002, 1.5], [0.003, 0.004, 0.5]]));
 }
 
 #[test]

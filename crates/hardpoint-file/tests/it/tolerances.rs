@@ -239,11 +239,16 @@ fn rss_and_monte_carlo_agree_on_the_strut() {
 
 /// Driven by its slider, which is 0.5 mm short of where the crank and the rod are in line.
 fn near_dead_point(tolerance: f64) -> ModelFile {
+    driven_near_dead_point(tolerance, "-t")
+}
+
+fn driven_near_dead_point(tolerance: f64, law: &str) -> ModelFile {
+    let slider = format!("drivers.motor = {{ joint = \"slide\", law = \"{law}\" }}");
     let text = CRANK
         .replace("hardpoints = { O = [0, 0, 0], A = [\"radius*cos(40*pi/180)\", \"radius*sin(40*pi/180)\", 0], B = [300, \"offset\", 0] }",
             "hardpoints = { O = [0, 0, 0], A = [99.6249, 8.6547, 0], B = [399.5, 0, 0] }")
         .replace("parameters.offset = { value = 20, unit = \"length\" }\nparameters.radius = { value = 100, unit = \"length\" }\n", "")
-        .replace("drivers.motor = { joint = \"pivot\", law = \"20*t\" }", "drivers.motor = { joint = \"slide\", law = \"-t\" }")
+        .replace("drivers.motor = { joint = \"pivot\", law = \"20*t\" }", &slider)
         .replace("type = \"position\", point = \"B\", along = \"x\"", "type = \"coordinate\", joint = \"pivot\"");
     model(&format!("{text}\n[tolerance]\nsamples = 20000\n[tolerance.variables]\nrod = {tolerance}\n"))
 }
@@ -277,6 +282,23 @@ fn designs_beyond_the_dead_point_are_counted_with_their_reason() {
     assert_eq!(drawn.metrics[0].known + drawn.failed, 20_000);
     let lowest = &spread(&file, &found, "first").worst[0];
     assert!(found.metrics.iter().any(|m| m.worst.iter().any(|e| e.why.is_some())), "{lowest:?}");
+}
+
+#[test]
+fn designs_that_fail_at_the_start_and_on_the_way_are_counted_apart() {
+    let file = driven_near_dead_point(0.3, "0.2 + 0.2*t");
+    let found = examined(&file, |_| ());
+    let drawn = sampled(&found);
+    // Rods that are shorter by 0.3 mm do not reach the start, and by 0.1 mm not the end: 0.1 mm is one sigma.
+    let [start, end] = [0.001_349_9, 0.158_655].map(|part| 20_000.0 * part);
+    let count = |words: &str| {
+        let of = drawn.failures.iter().filter(|f| f.why.contains(words));
+        of.map(|f| f.count as f64).sum::<f64>()
+    };
+    assert_eq!(drawn.failures.len(), 2, "{:?}", drawn.failures);
+    let [at_start, on_the_way] = ["does not reach its start position", "cannot move beyond"].map(count);
+    assert!((at_start - start).abs() < ERRORS * start.sqrt(), "{at_start} {start}");
+    assert!((on_the_way - (end - start)).abs() < ERRORS * (end - start).sqrt(), "{on_the_way} {end}");
 }
 
 #[test]

@@ -225,6 +225,28 @@ fn studies_that_cannot_be_requested_have_the_message_of_the_request() {
     assert_eq!(found["message"], "there is no allocation rule named `worst`");
 }
 
+/// The places of a joint's axis are written together, which a tilt changes in a way that no number of the text has.
+#[test]
+fn an_optimum_that_the_text_cannot_have_comes_with_its_tables_and_the_reason() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/studies/strut_toe.toml");
+    let mut strut = model(&path);
+    let tilt = "[design]\nlca_tilt = { tilt = \"lca_pivot\", about = \"y\", bounds = [-2, 2] }\n";
+    strut["text"] = strut["text"].as_str().unwrap().replace("[design]\n", tilt).into();
+    let metric = hardpoint_file::read(&path).unwrap().model.metrics[0].name.clone();
+    let asked = json!({
+        "variables": [{ "name": "lca_tilt", "bounds": [-2, 2] }],
+        "goals": [{ "metric": metric, "weight": 1, "target": null }],
+        "starts": 1,
+        "iterations": 20,
+    });
+    let found = ask(&mut Engine::default(), json!({ "ask": "optimize", "model": strut, "asked": asked }));
+    assert_eq!(found["text"], Value::Null, "{found}");
+    assert_eq!(found["change"][0]["name"], "lca_tilt");
+    assert!(!found["tables"].as_array().unwrap().is_empty());
+    let message = found["message"].as_str().unwrap();
+    assert!(message.contains("not saved: the change of `lca_tilt` cannot be saved: "), "{message}");
+}
+
 #[test]
 fn messages_have_positions() {
     let mut strut = named("macpherson.toml");

@@ -99,15 +99,15 @@ impl FitWorkspace<'_> {
         let n = self.parameters.len();
         let unidentifiable_part =
             |k: usize| directions.unidentifiable.iter().map(|(v, _)| v[k].abs()).fold(0.0, f64::max);
-        let is_stuck = search.status == Status::Stuck;
-        let in_steps = match is_stuck {
+        let is_off = matches!(search.status, Status::Stuck | Status::Diverged);
+        let in_steps = match is_off {
             true => vec![vec![f64::NAN; n]; n],
             false => directions.covariance(n),
         };
         let covariance = (0..n)
             .map(|i| (0..n).map(|j| in_steps[i][j] * self.steps[i] * self.steps[j]).collect::<Vec<f64>>())
             .collect::<Vec<_>>();
-        let is_known = |k: usize| !is_stuck && unidentifiable_part(k) <= PART && search.active[k].is_none();
+        let is_known = |k: usize| !is_off && unidentifiable_part(k) <= PART && search.active[k].is_none();
         let sigma = |k: usize| is_known(k).then(|| covariance[k][k].sqrt());
         let sigmas = (0..n).map(sigma).collect();
         let unidentifiable = |(v, sigma): &(Vec<f64>, Option<f64>)| {
@@ -130,7 +130,7 @@ impl FitWorkspace<'_> {
             (dot(&cv, v) / dot(v, v)).max(0.0).sqrt()
         };
         let by_prior =
-            directions.by_prior.iter().map(|v| unidentifiable(&(v.clone(), (!is_stuck).then(|| spread(v)))));
+            directions.by_prior.iter().map(|v| unidentifiable(&(v.clone(), (!is_off).then(|| spread(v)))));
         let prior_sigmas =
             self.priors.sigmas(n).into_iter().zip(&self.steps).map(|(s, step)| Some(s? * step));
         Certainty {

@@ -5,6 +5,7 @@ use std::cell::{Cell, RefCell};
 use crate::evaluation::StudyCost;
 use crate::recent::Recent;
 use crate::request::RequestError;
+use crate::sweep::quantile;
 use hardpoint::joint::Quantity;
 use hardpoint::measure::{Output, outputs};
 use hardpoint::model::{Dimension, DriverId, Model, OutputSource, VariableId};
@@ -22,6 +23,9 @@ use super::{
 /// Maximum change of a variable from the nominal design, in natural steps (each about the mechanism's size or a
 /// radian).
 const FARTHEST: f64 = 10.0;
+/// Change from the nominal design, in natural steps, beyond which a parameter has run away: no mechanism has links a
+/// million times its size, and round-off hides what the readings say about them.
+const RUNAWAY: f64 = 1e6;
 /// A singular value below this fraction of the largest is round-off: the readings do not determine its direction.
 const ROUND_OFF: f64 = 1e-9;
 /// The objective has converged if an iteration lowers it by less than this fraction.
@@ -149,7 +153,7 @@ impl<'b> FitWorkspace<'b> {
         for (posture, analysis) in self.analyses.iter().enumerate() {
             let found = solve_posture(analysis, &[], &self.outputs, &mut self.cost.borrow_mut());
             if let Err(stop) = &found {
-                self.not_reached.push(UnreachedPosture { posture, why: stop.headline(analysis.model()) });
+                self.not_reached.push(UnreachedPosture::of(posture, stop, analysis.model()));
             }
             self.nominal.push(found.ok());
         }
@@ -341,7 +345,7 @@ impl<'b> FitWorkspace<'b> {
         } else {
             let mut sizes: Vec<f64> = r.iter().map(|r| r.abs()).collect();
             sizes.sort_by(f64::total_cmp);
-            sizes[sizes.len() / 2] / MEDIAN_OF_NORMAL
+            quantile(&sizes, 0.5) / MEDIAN_OF_NORMAL
         };
         if found > 0.0 { found } else { 1.0 }
     }
@@ -511,6 +515,16 @@ impl<'b> FitWorkspace<'b> {
         }
         let of = |at: &Rows| self.loss_of(&at.r, scale) + at.priors.iter().map(|r| r * r).sum::<f64>();
         let objective = [of(&first), of(&at)];
+        let status = match status {
+            Status::Found | Status::Stuck | Status::IterationLimit if x.iter().any(|x| x.abs() > RUNAWAY) => {
+                Status::Diverged
+            }
+            Status::Found
+            | Status::Stuck
+            | Status::IterationLimit
+            | Status::Diverged
+            | Status::Interrupted => status,
+        };
         let active = self.active_bounds(&x);
         SearchResult { status, x, at, weights, active, scale, objective, iterations }
     }

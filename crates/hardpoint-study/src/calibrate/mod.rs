@@ -35,6 +35,7 @@ use super::progress::{Control, Progress, Step};
 use super::request::{RequestError, named};
 
 pub use certainty::{Certainty, UnidentifiableChange};
+use posture::path_end;
 pub(crate) use posture::posture_model;
 
 pub use next::{Improvement, NextReading};
@@ -86,6 +87,8 @@ pub enum Status {
     Found,
     /// Better designs cannot be reached: the mechanism does not assemble or stops before a posture.
     Stuck,
+    /// A parameter has left every sensible range: the readings do not determine it, or do not fit the mechanism.
+    Diverged,
     /// The iteration limit was reached.
     IterationLimit,
     /// The caller ended the fit.
@@ -113,12 +116,15 @@ pub enum BoundSide {
 }
 
 /// Posture that the nominal design does not reach. Its readings are left out.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct UnreachedPosture {
     /// Index of the posture.
     pub posture: usize,
     /// Description of the event.
     pub why: String,
+    /// Positions of the drivers at the last solved position on the path to the posture, counted like those of
+    /// [`Measurements`](hardpoint::model::Measurements); `None` if the path has none.
+    pub last: Option<Vec<f64>>,
 }
 
 /// Reading with the values of the nominal and the fitted design.
@@ -203,7 +209,7 @@ pub fn calibrate(model: &Model, request: &Request<'_>, control: Control<'_>) -> 
     let certainty = workspace.certainty(&search, &directions);
     let next = match search.status {
         Status::Found => workspace.next(&search, &directions, &certainty),
-        Status::Stuck | Status::IterationLimit | Status::Interrupted => Vec::new(),
+        Status::Stuck | Status::Diverged | Status::IterationLimit | Status::Interrupted => Vec::new(),
     };
     let validation = request.validation.map(|data| workspace.validate(data, &others, &search, &directions));
     Ok(workspace.calibration(search, certainty, next, validation, outputs(model)))
@@ -226,7 +232,7 @@ pub fn values_in_postures(
         let solved = posture::solve_posture(analysis, design, &sources, &mut StudyCost::default());
         let values =
             |posture: posture::ReachedPosture| (0..sources.len()).map(|m| posture.value(m)).collect();
-        solved.map(values).map_err(|stop| stop.headline(analysis.model()))
+        solved.map(values).map_err(|stop| path_end(&stop, analysis.model()))
     };
     Ok(posture::planned(&models, formulation)?.iter().map(values).collect())
 }

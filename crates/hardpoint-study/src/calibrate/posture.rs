@@ -10,9 +10,11 @@ use hardpoint::measure::outputs;
 use hardpoint::model::{
     Case, CaseId, DriverId, ElementId, LoadMode, Measurements, Model, OutputSource, VariableId,
 };
-use hardpoint::motion::Stop;
+use hardpoint::motion::{Stop, StopKind};
 use hardpoint::run::{Analysis, Run, Solution};
 use hardpoint::topology::{Formulation, TopologyError};
+
+use super::UnreachedPosture;
 
 /// Parameter of a law: the offset of its driver.
 const OFFSET: &str = "offset";
@@ -102,6 +104,36 @@ pub(super) fn read_outputs(model: &Model, data: &Measurements) -> Vec<OutputSour
     let all = outputs(model);
     let columns: BTreeSet<usize> = data.readings.iter().map(|reading| reading.output).collect();
     columns.into_iter().map(|column| all[column].source).collect()
+}
+
+impl UnreachedPosture {
+    /// Posture that a motion ends before.
+    pub(super) fn of(posture: usize, stop: &Stop, model: &Model) -> Self {
+        let position = |(d, by): (usize, &f64)| model.as_drawn(DriverId(d)) + by;
+        let drivers = || stop.drivers.iter().take(model.drivers.len()).enumerate().map(position).collect();
+        Self { posture, why: path_end(stop, model), last: stop.last_time.map(|_| drivers()) }
+    }
+}
+
+/// Description of the end of a path to a posture. Its times are not those of a motion.
+pub(super) fn path_end(stop: &Stop, model: &Model) -> String {
+    match stop.kind {
+        StopKind::Limit | StopKind::BranchChange if stop.last_time.is_none() => {
+            "the mechanism does not reach the design configuration of its drivers".into()
+        }
+        StopKind::Limit
+        | StopKind::BranchChange
+        | StopKind::DoesNotAssemble
+        | StopKind::Locked { .. }
+        | StopKind::LawNotFinite { .. }
+        | StopKind::TooFar { .. }
+        | StopKind::JointLimit { .. }
+        | StopKind::Interrupted
+        | StopKind::NothingHolds { .. }
+        | StopKind::LimitLoad { .. }
+        | StopKind::NoEquilibrium
+        | StopKind::Unstable { .. } => stop.happened(model),
+    }
 }
 
 /// Solves a posture of a design, with these outputs and their derivatives.

@@ -44,7 +44,7 @@ impl FitWorkspace<'_> {
         for (posture, analysis) in analyses.iter().enumerate() {
             let solved = solve_posture(analysis, &design, &outputs, &mut self.cost.borrow_mut());
             if let Err(stop) = &solved {
-                found.not_reached.push(UnreachedPosture { posture, why: stop.headline(analysis.model()) });
+                found.not_reached.push(UnreachedPosture::of(posture, stop, analysis.model()));
             }
             reached.push(solved.ok());
         }

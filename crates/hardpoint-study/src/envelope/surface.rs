@@ -5,12 +5,13 @@
 //! exactly on the edges' zeros, so that neighbours share them and the surface is closed (marching tetrahedra: Doi and
 //! Koide 1991).
 
+use std::cell::Cell;
 use std::collections::{HashMap, HashSet};
 
 use hardpoint::space::{Vec3, nearest_of_triangle};
 
 /// The function, as the least of several: `parts[k]` are those that can be the least nearby.
-pub trait LeastOf: Sync {
+pub trait LeastOf {
     /// Value of part k at a point.
     fn part(&self, k: usize, p: Vec3) -> f64;
     /// Zero of part k that is nearest to a point.
@@ -72,13 +73,15 @@ const MARGIN: f64 = 1e-3;
 type Node = [u32; 3];
 
 /// The surface of a function of `count` parts within the cube from `low` with edges of `size`, with cells no larger
-/// than `cell`. `None` if it has more than `most` cells, or if `more` returns false.
+/// than `cell`. `None` if it has more than `most` cells, if no values of parts are `left` to be evaluated, or if `more`
+/// returns false.
 pub fn surface(
     of: &dyn LeastOf,
     count: usize,
     (low, size): (Vec3, f64),
     cell: f64,
     most: usize,
+    left: &Cell<usize>,
     more: &dyn Fn() -> bool,
 ) -> Option<Triangles> {
     let halvings = ((size / cell).log2().ceil().max(0.0) as u32).min(MOST_HALVINGS);
@@ -87,6 +90,7 @@ pub fn surface(
     let found = Triangles::default();
     let (parts, lists) = (Vec::new(), Vec::new());
     let by_cell = HashMap::new();
+    let of = &Counted { of, left };
     let mut search = Search { of, low, cell, most, cells: 0, values, zeros, found, parts, lists, by_cell };
     let all = Nearby { middle: low, parts: (0..count).map(|k| (f64::NEG_INFINITY, k)).collect() };
     search.part([0; 3], halvings, &all, more)?;
@@ -118,8 +122,29 @@ impl Nearby {
     }
 }
 
-struct Search<'a> {
+/// A function whose values of parts are counted.
+struct Counted<'a> {
     of: &'a dyn LeastOf,
+    left: &'a Cell<usize>,
+}
+
+impl LeastOf for Counted<'_> {
+    fn part(&self, k: usize, p: Vec3) -> f64 {
+        self.left.set(self.left.get().saturating_sub(1));
+        self.of.part(k, p)
+    }
+
+    fn zero(&self, k: usize, p: Vec3) -> Vec3 {
+        self.of.zero(k, p)
+    }
+
+    fn corners(&self, k: usize) -> Vec<Vec3> {
+        self.of.corners(k)
+    }
+}
+
+struct Search<'a> {
+    of: &'a Counted<'a>,
     low: Vec3,
     cell: f64,
     most: usize,
@@ -147,6 +172,9 @@ impl Search<'_> {
         let edge = f64::from(1_u32 << halvings) * self.cell;
         let middle = self.place(corner) + Vec3::new(1.0, 1.0, 1.0) * (0.5 * edge);
         let reach = 0.5 * edge * 3.0_f64.sqrt();
+        if self.of.left.get() == 0 {
+            return None;
+        }
         let values = nearby.parts.iter().map(|(_, k)| (self.of.part(*k, middle), *k));
         let mut parts: Vec<(f64, usize)> = values.collect();
         parts.sort_by(|a, b| a.0.total_cmp(&b.0));

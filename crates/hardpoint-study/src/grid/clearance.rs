@@ -51,7 +51,7 @@ pub struct GridMinimum {
     /// False if only the grid's position is known: there is no derivative in the drivers, or the search did not end.
     pub is_located: bool,
     /// Derivative of the distance by every design variable with both drivers fixed; NaN for those that are not
-    /// admissible.
+    /// admissible, and where the cores meet.
     pub d: Vec<f64>,
 }
 
@@ -230,7 +230,11 @@ impl Search<'_> {
         }
         let on_end = x.iter().filter(|x| **x <= 0.0 || **x >= 1.0).count();
         let position = place(x);
-        let (at, d) = self.result(shapes, position)?;
+        let (at, mut d) = self.result(shapes, position)?;
+        if at.cores_meet {
+            // The nearest points coincide: no direction leads from one to the other.
+            d.fill(f64::NAN);
+        }
         let as_drawn = [0, 1].map(|k| self.grid.values[k][0] - lows[k]);
         Ok(GridMinimum {
             drivers: [0, 1].map(|k| as_drawn[k] + position[k]),

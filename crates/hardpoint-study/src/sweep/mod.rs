@@ -18,7 +18,7 @@ use hardpoint::run::{Run, Solution};
 
 use super::evaluation::{Motions, StudyCost};
 use super::request::RequestError;
-use super::samples::{SampleBlock, SampleRun};
+use super::samples::{SampleBlock, SampleRun, failure_reason};
 use hardpoint::run::{metric_number, place_of};
 
 pub use indices::{SobolIndex, sobol_indices};
@@ -69,8 +69,8 @@ pub struct Failure {
     pub number: usize,
     /// Index of the motion among those studied.
     pub motion: usize,
-    /// Diagnostic code of the failure (`docs/diagnostics.md`).
-    pub code: String,
+    /// Reason without the numbers of this design: failures with the same one are counted together.
+    pub reason: String,
     /// Description of the failure.
     pub why: String,
 }
@@ -151,8 +151,8 @@ impl<'a> Sweep<'a> {
         block.cost.motions += 1;
         block.cost.steps += solution.motion.len();
         if let Some(stop) = &solution.stop {
-            let (code, why) = (stop.code().to_owned(), stop.headline(model));
-            block.failures.push(Failure { number, motion, code, why });
+            let (reason, why) = (failure_reason(stop, model), stop.headline(model));
+            block.failures.push(Failure { number, motion, reason, why });
         }
         for (k, of) in self.metrics.iter().enumerate().filter(|(_, of)| of.motion == motion) {
             // An incomplete motion has no metrics.

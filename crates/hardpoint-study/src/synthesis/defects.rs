@@ -14,7 +14,8 @@ pub enum Defect {
     Branch,
     /// No motion leads from one pose to another: the linkage must be taken apart.
     Circuit,
-    /// The transmission angle is below one degree in a pose or on the way, or pins coincide.
+    /// The transmission angle is below one degree over the passage, or over the whole turn of a crank that can turn
+    /// fully; or pins coincide.
     Singular,
 }
 

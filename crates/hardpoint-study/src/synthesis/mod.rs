@@ -18,6 +18,7 @@ pub mod plane;
 mod polynomial;
 
 use std::f64::consts::TAU;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use sobol_burley::sample;
 
@@ -136,8 +137,6 @@ pub enum TaskError {
     FixedPivots,
     /// No type of linkage is selected.
     NoType,
-    /// The caller ended the study.
-    Interrupted,
 }
 
 /// Numbers of linkages of one type by their outcome.
@@ -200,6 +199,8 @@ pub struct Synthesis {
     pub rejections: Vec<Rejection>,
     /// Size of the task: the largest distance between two poses or points, m.
     pub size: f64,
+    /// True if the caller ended the study: the answers are those found so far.
+    pub is_interrupted: bool,
 }
 
 /// Poses whose origins are nearer than this part of the size, and whose angles than this, rad, coincide.
@@ -269,7 +270,8 @@ fn driven(sides: [Option<Linkage>; 2], moves: &[Displacement], any_order: bool, 
     }
 }
 
-/// Finds the linkages of a task. `more` is called regularly; if it returns false, the study ends.
+/// Finds the linkages of a task. `more` is called regularly; if it returns false, the study ends with those found so
+/// far.
 ///
 /// # Errors
 /// A [`TaskError`].
@@ -277,12 +279,19 @@ pub fn synthesize(task: &Task, more: &(dyn Fn() -> bool + Sync)) -> Result<Synth
     if !(task.four_bars || task.slider_cranks) {
         return Err(TaskError::NoType);
     }
-    match &task.aim {
-        Aim::Poses(poses) => through_poses(task, poses, more),
+    let ended = AtomicBool::new(false);
+    let more = || {
+        let goes_on = more();
+        ended.fetch_or(!goes_on, Ordering::Relaxed);
+        goes_on
+    };
+    let found = match &task.aim {
+        Aim::Poses(poses) => through_poses(task, poses, &more),
         Aim::Path { points, is_closed, turns } => {
-            along_path(task, points, *is_closed, turns.as_deref(), more)
+            along_path(task, points, *is_closed, turns.as_deref(), &more)
         }
-    }
+    };
+    found.map(|found| Synthesis { is_interrupted: ended.into_inner(), ..found })
 }
 
 /// Largest distance between two points.
@@ -378,7 +387,7 @@ fn through_poses(
     };
     for j in 0..cranks.len() {
         if !more() {
-            return Err(TaskError::Interrupted);
+            break;
         }
         for i in (0..j).filter(|_| task.four_bars) {
             pair(&cranks[i], &cranks[j], &mut found.four_bars);
@@ -562,14 +571,13 @@ fn along_path(
         found: Synthesis { size, ..Synthesis::default() },
         good: Vec::new(),
     };
-    for mut fit in fits(&target, &types, more)? {
-        if !more() {
-            return Err(TaskError::Interrupted);
-        }
+    for mut fit in fits(&target, &types, more) {
         // The nearest linkage is of no use where an exact one is good.
         let is_met = fit.exact().is_some_and(|exact| judge.with_cognates(exact));
         if !is_met {
-            fit.advance(&own, MOST_STEPS, true);
+            if more() {
+                fit.advance(&own, MOST_STEPS, true);
+            }
             judge.with_cognates(fit.nearest());
         }
     }
@@ -666,18 +674,15 @@ impl PathJudge<'_> {
     }
 }
 
-/// Searches from the starts of each type in the atlas; those that come nearest are completed.
-fn fits(
-    target: &Target<'_>,
-    types: &[AtlasType],
-    more: &(dyn Fn() -> bool + Sync),
-) -> Result<Vec<Search>, TaskError> {
+/// Searches from the starts of each type in the atlas; those that come nearest are completed, unless the caller ends
+/// the study.
+fn fits(target: &Target<'_>, types: &[AtlasType], more: &(dyn Fn() -> bool + Sync)) -> Vec<Search> {
     let mut found: Vec<Search> = Vec::new();
     for of in types {
         let mut searches: Vec<Search> = Vec::new();
         for start in atlas::resembling(target, *of, STARTS, more) {
             if !more() {
-                return Err(TaskError::Interrupted);
+                break;
             }
             let search = Search::new(&start.linkage, &start.turns, target.points, target.turns.is_some());
             if let Some(mut search) = search {
@@ -695,7 +700,7 @@ fn fits(
         }
         for search in &mut kept {
             if !more() {
-                return Err(TaskError::Interrupted);
+                break;
             }
             search.approach(target.points);
             if !search.is_exact() {
@@ -709,7 +714,7 @@ fn fits(
         }
         found.extend(kept);
     }
-    Ok(found)
+    found
 }
 
 /// Two points with the largest distance.

@@ -1,6 +1,7 @@
 //! Tests of the synthesis: identities of its dyads, hidden linkages, invariances, defects, and a nine-point path.
 
 use std::f64::consts::TAU;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use proptest::prelude::*;
 
@@ -506,7 +507,29 @@ fn tasks_without_a_synthesis_are_refused() {
     assert_eq!(refused(&none), TaskError::NoType);
     let given = Task { fixed_pivots: vec![at(0.0, 0.0)], ..poses_of(scattered(1)) };
     assert_eq!(refused(&given), TaskError::FixedPivots);
-    assert_eq!(synthesize(&poses_of(three), &|| false), Err(TaskError::Interrupted));
+}
+
+#[test]
+fn an_interrupted_synthesis_has_the_answers_so_far() {
+    let three = poses_of(vec![pose(0.0, 0.0, 0.0), pose(2.0, 0.5, 30.0), pose(3.0, 2.0, 70.0)]);
+    let path = path_of(vec![at(0.0, 0.0), at(1.0, 0.6), at(2.0, 0.8), at(3.0, 0.4)]);
+    for task in [three, path] {
+        let whole = of(&task);
+        let none = synthesize(&task, &|| false).unwrap_or_else(|e| panic!("{e:?}"));
+        assert!(!whole.is_interrupted && none.is_interrupted && none.answers.is_empty());
+        let calls = AtomicUsize::new(0);
+        let until = |last: usize| synthesize(&task, &|| calls.fetch_add(1, Ordering::Relaxed) < last);
+        until(usize::MAX).expect("as before");
+        let part = until(calls.swap(0, Ordering::Relaxed) * 3 / 4).expect("as before");
+        let made = |of: &Synthesis| of.four_bars.made + of.slider_cranks.made;
+        assert!(
+            part.is_interrupted && !part.answers.is_empty(),
+            "{:?} {:?}",
+            part.four_bars,
+            part.slider_cranks
+        );
+        assert!(made(&part) <= made(&whole), "{} {}", made(&part), made(&whole));
+    }
 }
 
 #[test]

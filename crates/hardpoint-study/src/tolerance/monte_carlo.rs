@@ -5,12 +5,11 @@ use std::ops::ControlFlow;
 
 use crate::evaluation::StudyCost;
 use crate::progress::{Progress, Step};
-use crate::samples::{SampleBlock, SampleRun};
+use crate::samples::{SampleBlock, SampleRun, failure_reason};
 use crate::sweep::quantile;
 use crate::whatif::unwrapped_value;
 use hardpoint::measure::Output;
 use hardpoint::model::Dimension;
-use hardpoint::motion::StopKind;
 use hardpoint::run::Solution;
 use hardpoint::run::{metric_numbers, place_of};
 
@@ -145,7 +144,8 @@ struct Block {
     metrics: Vec<Vec<f64>>,
     /// Statistics of each curve at each output time.
     curves: Vec<Vec<Growing>>,
-    failures: Vec<(usize, usize, StopKind, String)>,
+    /// Design, motion, reason and description of each failure.
+    failures: Vec<(usize, usize, String, String)>,
     cost: StudyCost,
 }
 
@@ -170,8 +170,8 @@ impl Study<'_> {
             block.cost.steps += solution.motion.len();
             let stop = solution.stop.as_ref();
             if let Some(stop) = stop {
-                let why = stop.headline(self.motions.model(motion));
-                block.failures.push((number, motion, stop.kind, why));
+                let model = self.motions.model(motion);
+                block.failures.push((number, motion, failure_reason(stop, model), stop.headline(model)));
             }
             let numbers: Vec<Option<f64>> = match stop {
                 None => metric_numbers(self.motions.model(motion), solution).collect(),
@@ -247,13 +247,12 @@ impl Study<'_> {
         });
         let limits = limits.collect();
         let mut failed = vec![false; samples];
-        let mut failures: Vec<(std::mem::Discriminant<StopKind>, FailureGroup)> = Vec::new();
-        for (number, motion, kind, why) in all.failures {
+        let mut failures: Vec<(String, FailureGroup)> = Vec::new();
+        for (number, motion, reason, why) in all.failures {
             failed[number] = true;
-            let kind = std::mem::discriminant(&kind);
-            match failures.iter_mut().find(|(k, f)| *k == kind && f.motion == motion) {
+            match failures.iter_mut().find(|(r, f)| *r == reason && f.motion == motion) {
                 Some((_, failure)) => failure.count += 1,
-                None => failures.push((kind, FailureGroup { motion, why, first: number, count: 1 })),
+                None => failures.push((reason, FailureGroup { motion, why, first: number, count: 1 })),
             }
         }
         let whole = |k: &usize| {

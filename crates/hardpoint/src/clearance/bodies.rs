@@ -14,9 +14,8 @@ pub(crate) trait Bodies<T> {
     fn direction(&self, body: BodyId, e: Vec3<T>) -> Vec3<T>;
     /// The body's pose in plain numbers.
     fn pose(&self, body: BodyId) -> Pose;
-    /// True if two bodies move relative to each other out of the plane through a point with this unit normal; false for
-    /// bodies without rates.
-    fn leave_plane(&self, bodies: [BodyId; 2], at: Vec3, normal: Vec3) -> bool;
+    /// The body's state in plain numbers; `None` for bodies without rates.
+    fn state(&self, body: BodyId) -> Option<BodyState>;
     /// Point of a body in plain numbers.
     fn place(&self, body: BodyId, s: Vec3) -> Vec3 {
         let Pose { rot, r } = self.pose(body);
@@ -41,8 +40,8 @@ impl<T: Real> Bodies<T> for [Pose<T>] {
         self[body.0].value()
     }
 
-    fn leave_plane(&self, _: [BodyId; 2], _: Vec3, _: Vec3) -> bool {
-        false
+    fn state(&self, _: BodyId) -> Option<BodyState> {
+        None
     }
 }
 
@@ -68,8 +67,8 @@ impl Bodies<Rates> for MovingBodies<'_> {
         self.0.body(body.0).pose()
     }
 
-    fn leave_plane(&self, bodies: [BodyId; 2], at: Vec3, normal: Vec3) -> bool {
-        leave_plane(bodies.map(|body| self.0.body(body.0)), at, normal)
+    fn state(&self, body: BodyId) -> Option<BodyState> {
+        Some(self.0.body(body.0))
     }
 }
 
@@ -130,20 +129,63 @@ impl Bodies<Dual<Rates>> for ChangingBodies {
         self.at[body.0].0.pose()
     }
 
-    fn leave_plane(&self, bodies: [BodyId; 2], at: Vec3, normal: Vec3) -> bool {
-        leave_plane(bodies.map(|body| self.at[body.0].0), at, normal)
+    fn state(&self, body: BodyId) -> Option<BodyState> {
+        Some(self.at[body.0].0)
     }
 }
 
 /// Part of a relative motion that is out of a plane above which it is no round-off.
 const OUT_OF_PLANE: f64 = 1e-6;
+/// Part of a motion that relative motion must exceed: below it is the round-off of bodies that move as one.
+const AT_REST: f64 = 1e-13;
 
-/// True if two bodies move relative to each other out of the plane through a point with this unit normal.
-fn leave_plane([a, b]: [BodyState; 2], at: Vec3, normal: Vec3) -> bool {
-    let velocity = |body: &BodyState| body.v + body.omega.cross(at - body.r);
-    let (slides, turns) = (velocity(&b) - velocity(&a), b.omega - a.omega);
-    slides.dot(normal).abs() > OUT_OF_PLANE * slides.norm()
-        || turns.cross(normal).norm() > OUT_OF_PLANE * turns.norm()
+/// A segment that moves: each end with the body that carries it.
+pub(super) struct MovingSegment {
+    /// Ends, global.
+    pub ends: [Vec3; 2],
+    /// The bodies that carry them.
+    pub carriers: [BodyState; 2],
+    /// True if one body carries both.
+    pub is_rigid: bool,
+}
+
+impl MovingSegment {
+    /// Velocities of its ends.
+    fn velocities(&self) -> [Vec3; 2] {
+        [0, 1].map(|k| {
+            let body = &self.carriers[k];
+            body.v + body.omega.cross(self.ends[k] - body.r)
+        })
+    }
+}
+
+/// True if two segments that cross at a point leave their plane: there the lines move apart along its normal, or a body
+/// that carries one of them turns out of it.
+pub(super) fn leave_their_plane(segments: [&MovingSegment; 2], at: Vec3) -> bool {
+    let [e, f] = segments.map(|s| s.ends[1] - s.ends[0]);
+    let Some(normal) = e.cross(f).unit() else { return false };
+    let velocities = segments.map(MovingSegment::velocities);
+    // Velocities of the lines' own points at the crossing, and the ends' velocities relative to each other.
+    let crossing = [0, 1].map(|k| {
+        let (from, along) = (segments[k].ends[0], [e, f][k]);
+        let [v, w] = velocities[k];
+        v + (w - v) * (along.dot(at - from) / along.dot(along))
+    });
+    let greatest = |all: &mut dyn Iterator<Item = Vec3>| all.map(|v| v.norm()).fold(0.0, f64::max);
+    let fastest = greatest(&mut velocities.into_iter().flatten());
+    let relative = greatest(&mut velocities[0].iter().flat_map(|v| velocities[1].map(|w| w - *v)));
+    if (crossing[1] - crossing[0]).dot(normal).abs() > OUT_OF_PLANE * relative + AT_REST * fastest {
+        return true;
+    }
+    // The plane of both lines turns with w: n . (w x e) is the rate at which the first one rises, and alike the second.
+    let rises = velocities.map(|[v, w]| normal.dot(w - v));
+    let turn = (f * rises[0] - e * rises[1]) * (1.0 / f.dot(e.cross(normal)));
+    let size = e.norm().max(f.norm());
+    segments.into_iter().filter(|s| s.is_rigid).any(|s| {
+        let spin = s.carriers[0].omega;
+        let within = OUT_OF_PLANE * (relative / size).max((spin - turn).norm());
+        (spin - turn).cross(normal).norm() > within + AT_REST * (spin.norm() + fastest / size)
+    })
 }
 
 /// A vector that is fixed in a body, with its rates: `omega x y` and `alpha x y + omega x (omega x y)`.

@@ -4,7 +4,7 @@ use crate::design::{BodyFixed, ShapeGeometry};
 use crate::model::{BodyId, ClearanceId, Model, PointId, ShapeId, ShapeKind, with_core};
 use crate::space::{Pose, Real, Vec3};
 
-use super::bodies::Bodies;
+use super::bodies::{Bodies, MovingSegment, leave_their_plane};
 use super::circle::Circle;
 use super::core::Core;
 use super::feature::{Feature, Placed, nearest_points};
@@ -135,7 +135,8 @@ impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
         let (near, frame) = match (cores, views) {
             ([Some(a), Some(b)], _) => {
                 let near = nearest(&a, &b);
-                let passes = near.is_way_out_in_plane() && self.leave_their_plane(shapes, [&a, &b], &near);
+                let passes =
+                    near.is_way_out_in_plane() && self.leave_their_plane(shapes, [&a, &b], near.points[0]);
                 return if passes { near.passing() } else { near };
             }
             ([Some(core), _], [_, Some((view, frame))]) => {
@@ -157,13 +158,16 @@ impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
         near.signed([plain(0), plain(1)])
     }
 
-    /// True if two segments that cross leave the plane that they are in.
-    fn leave_their_plane(&self, shapes: [ShapeId; 2], cores: [&Core; 2], near: &Nearest) -> bool {
-        let [Core::Segment([a, b]), Core::Segment([c, d])] = cores else { return false };
-        let carriers = shapes.map(|s| self.model.shapes[s.0].bodies(self.model));
-        let ([first], [second]) = (&carriers[0][..], &carriers[1][..]) else { return false };
-        let normal = (*b - *a).cross(*d - *c).unit();
-        normal.is_some_and(|n| self.bodies.leave_plane([*first, *second], near.points[0], n))
+    /// True if two segments that cross leave the plane that they are in; false where nothing has rates.
+    fn leave_their_plane(&self, shapes: [ShapeId; 2], cores: [&Core; 2], at: Vec3) -> bool {
+        let segment = |k: usize| {
+            let Core::Segment(ends) = *cores[k] else { return None };
+            let carriers = self.model.shapes[shapes[k].0].bodies(self.model);
+            let (first, last) = (*carriers.first()?, *carriers.last()?);
+            let states = [self.bodies.state(first)?, self.bodies.state(last)?];
+            Some(MovingSegment { ends, carriers: states, is_rigid: first == last })
+        };
+        segment(0).zip(segment(1)).is_some_and(|(a, b)| leave_their_plane([&a, &b], at))
     }
 
     /// Distance of two shapes between these features: that of their cores minus both radii.
@@ -171,13 +175,54 @@ impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
         if !near.distance.is_finite() {
             return T::constant(f64::NAN);
         }
-        let of_cores = near.distance_between(self.features(shapes, near));
         if near.is_tied {
-            // The formula of one of the features is stationary elsewhere.
-            let distance = of_cores.without_derivatives() - self.rounds(shapes);
+            // The deepest features change with any motion: the formula of one of them is stationary elsewhere.
+            let distance = self.changes(shapes) - self.rounds(shapes);
             return distance + T::constant(near.distance - distance.value());
         }
-        of_cores - self.rounds(shapes)
+        near.distance_between(self.features(shapes, near)) - self.rounds(shapes)
+    }
+
+    /// A number whose derivatives are zero where the cores of two shapes have the same place and form relative to each
+    /// other, and undefined where they do not.
+    fn changes(&self, shapes: [ShapeId; 2]) -> T {
+        let [first, second] = shapes.map(|shape| self.markers(shape));
+        let apart = second.iter().flat_map(|q| first.iter().map(|p| *q - *p));
+        let places = apart.flat_map(|v| [v.x, v.y, v.z]);
+        let sizes = shapes.into_iter().flat_map(|s| {
+            let ShapeGeometry { size, round, .. } = self.fixed.shapes[s.0];
+            // Only cores of cylinders depend on the radius around them.
+            let is_drum =
+                matches!(self.model.shapes[s.0].kind, ShapeKind::Cylinder { .. } | ShapeKind::Tyre { .. });
+            [size, if is_drum { round } else { size }]
+        });
+        places.chain(sizes).fold(T::zero(), |sum, x| sum + x.without_derivatives())
+    }
+
+    /// Points that determine the place of a core, and its form but for its radius.
+    fn markers(&self, shape: ShapeId) -> Vec<Vec3<T>> {
+        let kind = &self.model.shapes[shape.0].kind;
+        let mut points: Vec<Vec3<T>> = match kind {
+            ShapeKind::Sphere { centre: p }
+            | ShapeKind::Ring { centre: p, .. }
+            | ShapeKind::Plane { point: p, .. } => {
+                vec![self.point(*p)]
+            }
+            ShapeKind::Tyre { wheel, .. } => vec![self.point(self.model.wheels[wheel.0].centre)],
+            ShapeKind::Capsule { ends } | ShapeKind::Cylinder { ends, .. } => {
+                ends.map(|p| self.point(p)).to_vec()
+            }
+            ShapeKind::Hull { points, .. } => points.iter().map(|p| self.point(*p)).collect(),
+            ShapeKind::Mesh { body, .. } => {
+                let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+                corners.map(Vec3::from).map(|s| self.bodies.point(*body, s.spread())).to_vec()
+            }
+        };
+        let axis = self.model.shapes[shape.0].axis(self.model).zip(self.fixed.shapes[shape.0].axis);
+        if let Some(((body, _), axis)) = axis {
+            points.push(points[0] + self.bodies.direction(body, axis));
+        }
+        points
     }
 
     /// Unit vector from the nearest point of the first core to that of the second: `D' = n . (Q' - P')`. `None` where

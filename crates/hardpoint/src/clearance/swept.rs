@@ -1,5 +1,6 @@
 //! A shape at one pose, in the frame of another body: distances of points from it, and points of its surface.
 
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use crate::model::{ShapeId, ShapeKind, with_core};
@@ -9,6 +10,9 @@ use super::core::Core;
 use super::nearest::{Nearest, from_point};
 use super::placed::PlacedShapes;
 use super::surface::{View, moved};
+
+/// Number of points of the rim of a cylinder's cap.
+const RIM_POINTS: u32 = 24;
 
 /// A shape at one pose.
 #[derive(Clone, Debug)]
@@ -80,9 +84,24 @@ impl ShapeAtPose {
         }
     }
 
-    /// Corners of a hull or mesh: its thinnest parts end there.
+    /// Radius around the core, m.
+    pub fn round(&self) -> f64 {
+        self.round
+    }
+
+    /// Corners of a hull or mesh, and points of the sharp edges of a cylinder: its thinnest parts end there.
     pub fn corners(&self) -> Vec<Vec3> {
         match &self.solid {
+            Solid::Core(Core::Cylinder { middle, half_width }) if self.round == 0.0 => {
+                let x = middle.axis.any_perpendicular();
+                let y = middle.axis.cross(x);
+                let out = |n: u32| {
+                    let (sin, cos) = (f64::from(n) * TAU / f64::from(RIM_POINTS)).sin_cos();
+                    (x * cos + y * sin) * middle.radius
+                };
+                let ends = [-1.0, 1.0].map(|side| middle.moved(half_width * side).centre);
+                ends.iter().flat_map(|end| (0..RIM_POINTS).map(move |n| *end + out(n))).collect()
+            }
             Solid::Core(_) => Vec::new(),
             Solid::Hull { points, .. } => points.clone(),
             Solid::Mesh { surface, inverse } => {

@@ -3,7 +3,7 @@
 use crate::model::change::{self, Change, changes};
 use crate::model::{DriverId, HardpointId, JointId, Model, ParameterId};
 use crate::number::Real;
-use crate::space::{Mat3, Pose, Vec3, rotation_from_euler_313};
+use crate::space::{Pose, Vec3, rotation_from_euler_313};
 
 /// Effect of a kind of change on the design, for a value b of its variable. The default methods have no effect.
 pub(crate) trait Effect {
@@ -17,7 +17,14 @@ pub(crate) trait Effect {
         None
     }
 
-    /// Returns marker e of that joint in the design configuration, global; `marker` is its pose without this change.
+    /// Returns the rate of the rotation vector of that joint's marker e, global, rad per unit; zero if it does not
+    /// turn. Those of all changes of a marker add up.
+    fn rotation(&self, _e: usize) -> Vec3 {
+        Vec3::ZERO
+    }
+
+    /// Returns marker e of that joint in the design configuration, global; `marker` is its pose without this change,
+    /// but turned by its rotation.
     #[inline(always)]
     fn marker<T: Real>(&self, _model: &Model, marker: Pose<T>, _e: usize, _b: T) -> Pose<T> {
         marker
@@ -52,16 +59,15 @@ impl Effect for change::Marker {
         Some(self.joint)
     }
 
+    fn rotation(&self, e: usize) -> Vec3 {
+        if self.end.covers(e) { self.rotation } else { Vec3::ZERO }
+    }
+
     #[inline(always)]
-    fn marker<T: Real>(&self, _: &Model, Pose { mut rot, r }: Pose<T>, e: usize, b: T) -> Pose<T> {
-        if !self.end.covers(e) {
-            return Pose { rot, r };
-        }
-        // P = P_o + b V,  C = exp(b R U) C_o in global axes                                            (paper 3.1, 3.4)
-        if let Some(axis) = self.rotation.unit() {
-            rot = Mat3::about(axis, b * T::constant(self.rotation.norm())) * rot;
-        }
-        Pose { rot, r: self.position.spread().times_plus(b, r) }
+    fn marker<T: Real>(&self, _: &Model, Pose { rot, r }: Pose<T>, e: usize, b: T) -> Pose<T> {
+        // P = P_o + b V                                                                                     (paper 3.1)
+        let r = if self.end.covers(e) { self.position.spread().times_plus(b, r) } else { r };
+        Pose { rot, r }
     }
 }
 
@@ -119,6 +125,10 @@ macro_rules! in_designs {
 
             fn joint(&self) -> Option<JointId> {
                 match self { $(Self::$kind(change) => change.joint()),* }
+            }
+
+            fn rotation(&self, e: usize) -> Vec3 {
+                match self { $(Self::$kind(change) => change.rotation(e)),* }
             }
 
             #[inline(always)]

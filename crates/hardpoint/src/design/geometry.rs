@@ -9,6 +9,8 @@
 //! | `axes[e]` | C | C (2.2) | axes of a bushing, in the frames of its bodies |
 
 use crate::constraint::Row;
+use crate::joint::Need;
+use crate::model::{Joint, JointId, Model};
 use crate::number::Real;
 use crate::space::{Mat3, Pose, Vec3};
 
@@ -29,6 +31,24 @@ pub struct Geometry<T = f64> {
     pub numbers: Vec<T>,
     /// [`Model::size`](crate::model::Model::size), m: reference length at every step, computed once.
     pub size: f64,
+}
+
+impl<T: Real> Geometry<T> {
+    /// Markers between which an elastic joint opens: those of the joint, but marker j has the axes of marker i in the
+    /// design configuration also if the joint's second axis is on body j.
+    pub(crate) fn elastic_markers(&self, model: &Model, joint: JointId) -> [Pose<T>; 2] {
+        let Joint { kind, bodies, .. } = &model.joints[joint.0];
+        let [m_i, m_j] = self.markers[joint.0];
+        let rot = match kind.axis2 {
+            // A_j^T A_i C_i in the design configuration
+            Need::OnBodyJ => {
+                let [frame_i, frame_j] = bodies.map(|b| model.bodies[b.0].frame.rot);
+                (frame_j.transpose() * frame_i).spread() * m_i.rot
+            }
+            Need::Required | Need::Optional | Need::Orienting | Need::Unused => m_j.rot,
+        };
+        [m_i, Pose { rot, r: m_j.r }]
+    }
 }
 
 /// Body-fixed data that measures use.

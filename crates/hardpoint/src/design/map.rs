@@ -404,7 +404,23 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
         let model = self.design_map.model();
         let joint = &model.joints[j];
         // From its hardpoint and axes, then the changes of this joint alone (paper 3.1, 3.4; `design/change.rs`).
-        let drawn = Pose { rot: self.followed_frame(joint, e, values), r: self.place(joint.at[e], values) };
+        let mut drawn =
+            Pose { rot: self.followed_frame(joint, e, values), r: self.place(joint.at[e], values) };
+        // C = exp(b R U) C_o in global axes, with the sum of b R U of all variables                         (paper 3.4)
+        let turns = || {
+            let turns = self.changes_of(j).map(|(k, change)| (k, change.rotation(e)));
+            turns.filter_map(|(k, by)| Some((values.variables[k], by.unit()?, by.norm())))
+        };
+        let mut all = turns();
+        if let Some((b, axis, rate)) = all.next() {
+            let is_alone = all.next().is_none();
+            let sum = |sum, (b, axis, rate): (T, Vec3, f64)| (axis * rate).spread().times_plus(b, sum);
+            let turn = match is_alone {
+                true => Mat3::about(axis, b * T::constant(rate)),
+                false => Mat3::about_vector(turns().fold(Vec3::zero(), sum)),
+            };
+            drawn.rot = turn * drawn.rot;
+        }
         self.changes_of(j)
             .fold(drawn, |marker, (k, change)| change.marker(model, marker, e, values.variables[k]))
     }

@@ -3,7 +3,7 @@
 use crate::constraint::Row;
 use crate::linalg::FullPivot;
 use crate::model::element::ActsOn;
-use crate::model::{BodyId, GROUND, IdleRotation, JointId, Model, PointId};
+use crate::model::{BodyId, Element, GROUND, IdleRotation, Joint, JointId, Model, PointId};
 use crate::space::{Mat3, Twist, Vec3};
 
 /// Pivot, relative to the largest, below which a constraint is ignored.
@@ -39,8 +39,9 @@ impl Model {
             joints.sort_unstable();
             joints.dedup();
             joints.retain(|j| !self.joints[j.0].bodies.iter().all(|b| bodies.contains(b)));
-            let is_ball = |j: &JointId| self.joints[j.0].kind.is_ball();
-            let Some(ball) = joints.iter().copied().find(is_ball) else { continue };
+            // A universal joint has other axes, along which an elastic joint must not give.
+            let balls = joints.iter().copied().filter(|j| self.joints[j.0].kind.is_ball());
+            let Some(ball) = balls.min_by_key(|j| self.has_own_axes(*j)) else { continue };
             let Some(axis) = self.spin(&bodies, &joints, ball, &prescribed, size) else { continue };
             if self.equilibrium.is_some() && self.is_turned_by_forces(&bodies, ball, axis, size) {
                 continue;
@@ -51,6 +52,16 @@ impl Model {
             (fixed.kind, fixed.frames) = (&crate::joint::UNIVERSAL, [frame; 2]);
             self.idle.push(IdleRotation { bodies, joint: ball, axis });
         }
+    }
+
+    /// Returns true if the axes of a joint may have an effect: those that the user gives, or of an elastic joint.
+    fn has_own_axes(&self, joint: JointId) -> bool {
+        let acts_on_it = |element: &Element| {
+            let acts_on = element.kind.force(self).map(|force| force.acts_on);
+            matches!(acts_on, Some(ActsOn::Joint(of)) if of == joint)
+        };
+        let Joint { axis, axis2, .. } = &self.joints[joint.0];
+        axis.is_some() || axis2.is_some() || self.elements.iter().any(acts_on_it)
     }
 
     /// Returns true if a force may turn these bodies about an axis through this joint, so that their rotation is one of
@@ -72,8 +83,14 @@ impl Model {
             }
             ActsOn::Point(point) => is_beside(point),
             ActsOn::Wheel(_) | ActsOn::Body(_) => true,
+            // What holds a ball, or a hinge about its axis, against a body that does not turn with them.
+            ActsOn::Joint(joint) => element.kind.elastic_law().is_some_and(|law| {
+                let (about, joint) = (&law.gives()[3..], &self.joints[joint.0]);
+                let turns = if joint.kind.is_ball() { about.contains(&true) } else { about[2] };
+                turns && !joint.bodies.iter().all(|b| bodies.contains(b))
+            }),
             // Along the other joints the bodies slide, or turn about the same axis as all that they are connected to.
-            ActsOn::Coordinate(..) | ActsOn::Joint(_) => false,
+            ActsOn::Coordinate(..) => false,
         })
     }
 

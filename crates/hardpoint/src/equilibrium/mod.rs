@@ -9,11 +9,13 @@
 //! |---|---|---|
 //! | `release` | p | the mechanism with its elastic joints open and their openings as drivers |
 //! | `solver` | r, K | Newton's method on the openings, and their derivatives by the design |
+//! | `waypoints` | c | times between output times at which laws turn |
 //! | `second` | | second derivatives by the design and along a force, a driver or the design |
 
 mod release;
 mod second;
 mod solver;
+mod waypoints;
 
 pub(crate) use release::{Released, release};
 pub(crate) use second::{Along, Curvatures};

@@ -15,6 +15,7 @@ use crate::space::{Pose, Twist};
 use crate::topology::Topology;
 
 use super::second::{Along, Curvatures, SolvedEquilibrium};
+use super::waypoints::waypoints;
 
 /// Correction of the openings, rad or sizes, whose square is round-off: after it they are solved.
 const QUADRATIC: f64 = 1e-9;
@@ -30,7 +31,8 @@ const MOST_ITERATIONS: usize = 12;
 const CONTRACTION: f64 = 0.5;
 /// Largest of the first two corrections of an attempt, rad or sizes: a longer one may lead to another equilibrium.
 const LONGEST: f64 = 0.5;
-/// Shortest part of the way from one output time to the next: if it is rejected, there is no equilibrium near by.
+/// Shortest part of the way from one output time, or turn of a law, to the next: if it is rejected, there is no
+/// equilibrium near by.
 const SHORTEST: f64 = 1e-9;
 /// Maximum number of equilibria that a prediction uses.
 const PREDICTED_FROM: usize = 3;
@@ -188,14 +190,55 @@ impl<'a> EquilibriumSolver<'a> {
     }
 
     /// Moves the mechanism to its equilibrium at time t, at rest. Before the first it is in the design configuration,
-    /// without loads.
+    /// without loads. If laws turn on the way from the last output time, it is followed to there first.
     pub fn step(&mut self, one: &mut Stepper<'_>, t: f64) -> Result<(), Box<Stop>> {
-        let mut prediction = self.predicted(t);
+        let mut from = self.path.last().map(|passed| passed.time);
+        let mut targets = from.map_or_else(Vec::new, |from| self.waypoints(one, [from, t]));
+        targets.push(t);
+        let mut certain = true;
+        for (k, target) in targets.into_iter().enumerate() {
+            // Where a law turns, a polynomial through equilibria before may lead to another one.
+            let prediction = if k == 0 { self.predicted(target) } else { None };
+            certain = self.follow(one, from, target, prediction)?;
+            from = Some(target);
+        }
+        if self.path.len() == PREDICTED_FROM {
+            self.path.remove(0);
+        }
+        one.effort.equilibrium_iterations = self.iterations;
+        if !certain && one.effort.uncertain_stability.is_none() {
+            one.effort.uncertain_stability = Some(t);
+        }
+        advance::count(one);
+        self.path.push(Passed {
+            time: t,
+            drivers: self.last.drivers.clone(),
+            stiffness: self.stiffness.clone(),
+        });
+        Ok(())
+    }
+
+    /// Times between two output times at which laws of loads and drivers turn.
+    fn waypoints(&self, one: &Stepper<'_>, ends: [f64; 2]) -> Vec<f64> {
+        let of_drivers = self.held.iter().map(|d| one.mechanism.parts.law_of(d.0));
+        let of_loads = self.model.elements.iter().filter_map(|element| element.kind.law(self.model));
+        waypoints(of_drivers.chain(of_loads), ends)
+    }
+
+    /// Follows the equilibrium from the one that was accepted last, at time `from` (or in the design configuration
+    /// without loads), to that at time t. Returns true if it is certainly stable.
+    fn follow(
+        &mut self,
+        one: &mut Stepper<'_>,
+        from: Option<f64>,
+        t: f64,
+        mut prediction: Option<Prediction>,
+    ) -> Result<bool, Box<Stop>> {
         let (mut done, mut part, mut certain) = (0.0, 1.0, true);
         while done < 1.0 {
             let next = f64::min(done + part, 1.0);
             self.is_prepared = false;
-            let (time, drivers, loads) = self.on_the_way(one, t, next);
+            let (time, drivers, loads) = self.on_the_way(one, (from, t), next);
             let prediction = prediction.take();
             let is_predicted = prediction.is_some();
             let found = match prediction {
@@ -214,38 +257,30 @@ impl<'a> EquilibriumSolver<'a> {
                 Err(rejection) => {
                     part *= 0.5;
                     if part < SHORTEST {
-                        return Err(self.stop(one, t, done, rejection));
+                        return Err(self.stop(one, (from, t), done, rejection));
                     }
                 }
             }
         }
-        if self.path.len() == PREDICTED_FROM {
-            self.path.remove(0);
-        }
-        one.effort.equilibrium_iterations = self.iterations;
-        if !certain && one.effort.uncertain_stability.is_none() {
-            one.effort.uncertain_stability = Some(t);
-        }
-        advance::count(one);
-        self.path.push(Passed {
-            time: t,
-            drivers: self.last.drivers.clone(),
-            stiffness: self.stiffness.clone(),
-        });
-        Ok(())
+        Ok(certain)
     }
 
-    /// Time, drivers and loads after this part of the way to output time t, with the openings where they are. The way
-    /// to the first output time leads straight from the design configuration without loads; others follow the laws.
-    fn on_the_way(&self, one: &Stepper<'_>, t: f64, part: f64) -> (f64, Vec<f64>, GivenLoads) {
+    /// Time, drivers and loads after this part of the way to time t, with the openings where they are. The way to the
+    /// first output time leads straight from the design configuration without loads; others follow the laws.
+    fn on_the_way(
+        &self,
+        one: &Stepper<'_>,
+        (from, t): (Option<f64>, f64),
+        part: f64,
+    ) -> (f64, Vec<f64>, GivenLoads) {
         let mut drivers = self.last.drivers.clone();
         let law = |d: &DriverId, time: f64| one.mechanism.parts.law(d.0, time)[0];
-        match self.path.last() {
+        match from {
             None => {
                 self.held.iter().for_each(|d| drivers[d.0] = part * law(d, t));
                 (t, drivers, GivenLoads::at(self.model, t).times(part))
             }
-            Some(Passed { time: from, .. }) => {
+            Some(from) => {
                 let time = if part == 1.0 { t } else { from + (t - from) * part };
                 self.held.iter().for_each(|d| drivers[d.0] = law(d, time));
                 (time, drivers, GivenLoads::at(self.model, time))
@@ -704,12 +739,18 @@ impl<'a> EquilibriumSolver<'a> {
         }
     }
 
-    /// Reason why the way to the equilibrium at time t ends after a part of it.
-    fn stop(&mut self, one: &mut Stepper<'_>, t: f64, done: f64, rejection: Rejection) -> Box<Stop> {
+    /// Reason why the way to the equilibrium at time t, from that at time `from`, ends after a part of it.
+    fn stop(
+        &mut self,
+        one: &mut Stepper<'_>,
+        (from, t): (Option<f64>, f64),
+        done: f64,
+        rejection: Rejection,
+    ) -> Box<Stop> {
         let unheld = if self.path.is_empty() && done == 0.0 { self.unheld(one) } else { None };
         let at_output = self.path.last();
         let last_time = at_output.map(|passed| passed.time);
-        let failed_time = last_time.map_or(t, |from| from + (t - from) * done);
+        let failed_time = from.map_or(t, |from| from + (t - from) * done);
         let drivers = at_output.map_or(&self.last.drivers, |passed| &passed.drivers).clone();
         let rejection = match (rejection, unheld) {
             (rejection @ Rejection::Locked(_), _) | (rejection, None) => rejection,

@@ -71,6 +71,15 @@ impl Expression {
         Self { text: value.to_string(), names: Vec::new(), program, per_metre: 1.0 }
     }
 
+    /// Sum of a name, which expressions may be unable to write, and a number.
+    ///
+    /// # Errors
+    /// Returns an error if the number is not finite.
+    pub fn sum(name: &str, number: f64) -> Result<Self, ExpressionError> {
+        let sum = Self::parse(&format!("name + ({number:?})"))?;
+        Ok(Self { text: format!("{name} + ({number:?})"), names: vec![name.to_owned()], ..sum })
+    }
+
     /// This expression with its lengths in a unit of which `per_metre` make a metre.
     #[must_use]
     pub fn with_unit(self, per_metre: f64) -> Self {

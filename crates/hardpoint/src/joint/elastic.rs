@@ -1,8 +1,8 @@
 //! Types of joints that give along and about some of their axes.
 //!
-//! The chain of such a joint is `S(x, y, z) Rx(alpha) Ry(beta) Rz(gamma)` from marker i to marker j, with the
-//! directions that give and those that are free; a rigid direction has no freedom. Its force is a load
-//! (`element/elastic_joint.rs`).
+//! The chain of such a joint is `S(x, y, z) Rx(alpha) Ry(beta) Rz(gamma)` from marker i to marker j, or of a cross
+//! `S(x, y, z) Rz(gamma) Ry(beta) Rx(alpha)`, with the directions that give and those that are free; a rigid direction
+//! has no freedom. Its force is a load on the same coordinates (`element/elastic_joint.rs`, `load/opening.rs`).
 
 use std::sync::{Mutex, PoisonError};
 
@@ -111,8 +111,11 @@ fn make(rigid: &'static JointType, directions: [bool; DIRECTIONS]) -> Option<Ela
     });
     let coordinates = coordinates.chain(openings).collect::<Vec<_>>().leak();
     let free = free_directions(rigid);
-    let rows = (0..DIRECTIONS).filter(|d| !directions[*d] && !free[*d]).map(rigid_row).collect::<Vec<_>>();
+    let mut rows =
+        (0..DIRECTIONS).filter(|d| !directions[*d] && !free[*d]).map(rigid_row).collect::<Vec<_>>();
     let can_be_cut = rows.is_empty() || is_simple;
+    // Constraints between free directions, such as that of a constant-velocity joint.
+    rows.extend(rigid.tree_rows);
     let kind = JointType {
         coordinates,
         freedoms: Some(freedoms.leak()),
@@ -189,8 +192,9 @@ mod tests {
                 let freedoms = kind.freedom_count().unwrap();
                 let opened = directions.iter().filter(|d| **d).count();
                 assert_eq!(freedoms, rigid.freedom_count().unwrap() + opened, "{}", rigid.name);
-                if can_be_cut && rigid.tree_rows.is_empty() {
-                    assert_eq!(freedoms + kind.rows.len(), 6, "{} {directions:?}", rigid.name);
+                if can_be_cut {
+                    let rows = kind.rows.len() - rigid.tree_rows.len();
+                    assert_eq!(freedoms + rows, 6, "{} {directions:?}", rigid.name);
                 }
                 for c in kind.coordinates {
                     assert!(c.freedom.is_none_or(|f| f < freedoms), "{}", rigid.name);

@@ -300,9 +300,14 @@ impl<T: Real> AppliedLoads<'_, T> {
     /// joints are rigid.
     pub fn opening(&self, e: ElementId, joint: JointId) -> Option<Opening<T>> {
         self.model.equilibrium.as_ref()?;
-        let [m_i, m_j] = self.geometry.markers[joint.0];
+        let [m_i, m_j] = self.geometry.elastic_markers(self.model, joint);
         let [i, j] = each(&self.model.joints[joint.0].bodies, |b| self.bodies[b.0].pose);
-        Some(Opening::between(&i.compose(m_i), &j.compose(m_j), self.near[e.0]))
+        let (i, j) = (i.compose(m_i), j.compose(m_j));
+        let opening = match self.model.joints[joint.0].kind.is_cross() {
+            true => Opening::of_cross,
+            false => Opening::between,
+        };
+        Some(opening(&i, &j, self.near[e.0]))
     }
 
     /// Opening of an element between two points: of its markers there, which have the same axes in the design

@@ -11,7 +11,7 @@ use crate::motion::kinematics::State;
 use crate::number::{Dual, Real};
 use crate::sensitivity::{Transmission, Transposed, Way};
 use crate::space::{Twist, Wrench};
-use crate::topology::{ClosureId, CoordinateId, LinkId, RowId, RowTerm, Topology};
+use crate::topology::{Closure, ClosureId, CoordinateId, LinkId, RowId, RowTerm, Topology};
 
 use super::acting::{AppliedLoads, MovingBody};
 use super::friction::Friction;
@@ -46,7 +46,7 @@ impl LoadSites {
     fn of(model: &Model, topology: &Topology) -> Self {
         Self {
             drivers: (0..model.drivers.len()).map(|d| driver_site(topology, DriverId(d))).collect(),
-            joints: (0..model.joints.len()).map(|j| joint_site(topology, JointId(j))).collect(),
+            joints: (0..model.joints.len()).map(|j| joint_site(model, topology, JointId(j))).collect(),
             way: Way::of_all(topology),
         }
     }
@@ -309,11 +309,12 @@ fn driver_site(topology: &Topology, driver: DriverId) -> Option<DriverSite> {
     }
 }
 
-/// Rows that transmit a joint's wrench. The couples of couplers between its coordinates belong to the couplers.
-fn joint_site(topology: &Topology, joint: JointId) -> JointSite {
+/// Rows that transmit a joint's wrench. The couples of couplers between its coordinates belong to the couplers, except
+/// the thread of a screw.
+fn joint_site(model: &Model, topology: &Topology, joint: JointId) -> JointSite {
     let link = LinkId::each(&topology.links).find(|(_, link)| link.joint == Some(joint));
-    let closures =
-        ClosureId::each(&topology.closures).filter(|(_, c)| c.joint == joint && c.coupler.is_none());
+    let is_own = |c: &Closure| c.joint == joint && c.coupler.is_none_or(|k| model.couplers[k].is_thread());
+    let closures = ClosureId::each(&topology.closures).filter(|(_, c)| is_own(c));
     JointSite {
         link: link.map(|(k, link)| (k, link.parent_end == 0)),
         closures: closures.map(|(c, _)| c).collect(),

@@ -179,10 +179,16 @@ impl ElementCoordinate {
                 // Without equilibrium its joint is rigid.
                 let elastic = kind.elastic_law().filter(|law| law.resists_turns_about_z());
                 elastic.filter(|_| model.equilibrium.is_some())?;
-                // The last turn of the chain is the last Cardan angle.
-                let freedoms = model.joints[joint.0].kind.freedoms.unwrap_or_default();
-                let last = freedoms.len().checked_sub(1).filter(|k| freedoms[*k] == Freedom::Turn(2));
-                Some(Self { joint: Some(joint), freedom: last, row: Row::CardanAngle, is_angle: true })
+                let kind = model.joints[joint.0].kind;
+                let freedoms = kind.freedoms.unwrap_or_default();
+                let turn = freedoms.iter().rposition(|freedom| *freedom == Freedom::Turn(2));
+                let (freedom, row) = match kind.is_cross() {
+                    // The angle about the first pin.
+                    true => (turn, Row::Heading),
+                    // The last turn of the chain is the last Cardan angle.
+                    false => (turn.filter(|k| k + 1 == freedoms.len()), Row::CardanAngle),
+                };
+                Some(Self { joint: Some(joint), freedom, row, is_angle: true })
             }
             ActsOn::Points(_) => {
                 kind.elastic_law().filter(|law| law.resists_turns_about_z())?;
@@ -266,10 +272,13 @@ impl<'m> PathAngles<'m> {
         let Some(ElementCoordinate { joint, row, .. }) = ElementCoordinate::of(self.model, e) else {
             return unknown;
         };
-        let force = self.model.elements[e.0].kind.force(self.model);
-        let Some([i, j]) = force.map(|force| force.acts_on.bodies(self.model)) else { return unknown };
+        let Some(force) = self.model.elements[e.0].kind.force(self.model) else { return unknown };
+        let [i, j] = force.acts_on.bodies(self.model);
         let [i, j] = [i, j].map(|b| (self.poses[b.0], self.model.bodies[b.0].frame.rot));
         let ([m_i, m_j], kept) = match joint {
+            Some(joint) if matches!(force.acts_on, ActsOn::Joint(_)) => {
+                (self.geometry.elastic_markers(self.model, joint), Rates::constant(0.0))
+            }
             Some(joint) => (self.geometry.markers[joint.0], self.geometry.kept[joint.0].by(row)),
             // Angles do not depend on the points. Without axes of its own a bushing has the global ones.
             None => {

@@ -16,6 +16,17 @@ pub struct Coupler {
     pub constant: f64,
 }
 
+impl Coupler {
+    /// True for the thread of a screw, which is part of its joint.
+    pub fn is_thread(&self) -> bool {
+        match self.transmission {
+            Some(Transmission::Screw { .. }) => true,
+            Some(Transmission::Gears { .. } | Transmission::Rack { .. } | Transmission::Belt { .. })
+            | None => false,
+        }
+    }
+}
+
 /// A joint coordinate times a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CouplerTerm {

@@ -1,11 +1,13 @@
 //! Distance from singular positions: the conditioning of the Jacobian over time.
 
 use crate::constraint::{MarkerPair, Row};
+use crate::design::Geometry;
 use crate::joint::Freedom;
 use crate::linalg::{Elimination, MOST_GROWTH};
+use crate::model::Model;
 use crate::number::Dual;
 use crate::space::{Real, Twist, Vec3, Wrench};
-use crate::topology::{BlockId, ClosureColumn, LoopLink, RowId, RowTerm, Topology};
+use crate::topology::{BlockId, ClosureColumn, LoopLink, RowId, RowTerm, Topology, units_of};
 
 use super::kinematics::State;
 
@@ -33,12 +35,15 @@ pub(crate) struct Margins<T> {
     /// Per block: all of its rows; true if some are redundant.
     rows: Vec<Vec<RowId>>,
     redundant: Vec<bool>,
+    /// Per coordinate: 1 rad, or the size that its loop has in the design.
+    units: Vec<T>,
     row: Vec<T>,
     row_sums: Vec<T>,
 }
 
 impl<T: Real> Margins<T> {
-    pub fn new(topology: &Topology) -> Self {
+    /// Margins of the design with this geometry.
+    pub fn new(model: &Model, topology: &Topology, geometry: &Geometry<T>) -> Self {
         let widths = topology.blocks.iter().map(|b| b.unknowns.len());
         let dense = |n: usize| if n <= MOST_UNKNOWNS { n } else { 0 };
         let widest = widths.clone().max().unwrap_or(0);
@@ -47,6 +52,7 @@ impl<T: Real> Margins<T> {
         Self {
             rows,
             redundant,
+            units: units_of(model, topology, geometry),
             blocks: widths.map(|n| Elimination::new(dense(n))).collect(),
             row: vec![T::zero(); widest],
             row_sums: vec![T::zero(); widest],
@@ -93,9 +99,9 @@ impl<T: Real> Margins<T> {
         let n = block.unknowns.len();
         let (zero, one) = (T::zero(), T::one());
         let factors = &mut self.blocks[b.0];
-        let (row, sums) = (&mut self.row[..n], &mut self.row_sums[..n]);
+        let (row, sums, units) = (&mut self.row[..n], &mut self.row_sums[..n], &self.units[..]);
         for (k, &r) in block.selected.iter().enumerate() {
-            relative_row(topology, state, r, row);
+            relative_row(topology, units, state, r, row);
             // R: each row of J divided by its unit and its maximum resistance (29)
             let to = &mut factors.row_mut(k)[..n];
             for c in 0..n {
@@ -131,10 +137,10 @@ impl<T: Real> Margins<T> {
         let n = block.unknowns.len();
         let (zero, one) = (T::zero(), T::one());
         let factors = &mut self.blocks[b.0];
-        let (row, sums) = (&mut self.row[..n], &mut self.row_sums[..n]);
+        let (row, sums, units) = (&mut self.row[..n], &mut self.row_sums[..n], &self.units[..]);
         (0..n).for_each(|k| clear(factors.row_mut(k)));
         for &r in &self.rows[b.0] {
-            relative_row(topology, state, r, row);
+            relative_row(topology, units, state, r, row);
             for k in 0..n {
                 let to = &mut factors.row_mut(k)[..n];
                 for c in 0..n {
@@ -148,7 +154,7 @@ impl<T: Real> Margins<T> {
         }
         clear(sums);
         for &r in &self.rows[b.0] {
-            relative_row(topology, state, r, row);
+            relative_row(topology, units, state, r, row);
             // Column r of R^+ = N^-1 R^T is N^-1 (row r of R)
             factors.solve(row);
             for c in 0..n {
@@ -203,18 +209,17 @@ const SQUARED: f64 = 1e-6;
 
 /// Constraint row r of the Jacobian, by column of its block, divided by its maximum resistance.
 #[inline(always)]
-fn relative_row<T: Real>(topology: &Topology, state: &State<T>, r: RowId, row: &mut [T]) {
+fn relative_row<T: Real>(topology: &Topology, units: &[T], state: &State<T>, r: RowId, row: &mut [T]) {
     let scale = 1.0 / topology[r].unit;
     clear(row);
     for RowTerm { row: part, factor } in topology.parts_of_row(r) {
         let l = wrench(topology, state, part);
         for &ClosureColumn { column, coordinate: c, side } in &topology.closure_of(part).entries {
             // +- c_k l_k . x_c, in the units of row and coordinate                                                (6)
-            let unit = topology[c].unit;
-            row[column] += l.on(state.x[0][c.0]) * T::constant(scale * unit * side * factor);
+            row[column] += l.on(state.x[0][c.0]) * units[c.0] * T::constant(scale * side * factor);
         }
     }
-    let per_most = T::one() / most_resistance(topology, state, r);
+    let per_most = T::one() / most_resistance(topology, units, state, r);
     row.iter_mut().for_each(|x| *x = *x * per_most);
 }
 
@@ -226,7 +231,7 @@ fn wrench<T: Real>(topology: &Topology, state: &State<T>, r: RowId) -> Wrench<T>
 
 /// Maximum resistance of constraint row r in any coordinate of its loop, scaled like its row of the Jacobian.
 #[inline(always)]
-fn most_resistance<T: Real>(topology: &Topology, state: &State<T>, r: RowId) -> T {
+fn most_resistance<T: Real>(topology: &Topology, units: &[T], state: &State<T>, r: RowId) -> T {
     let scale = 1.0 / topology[r].unit;
     let mut most = T::constant(f64::MIN_POSITIVE);
     for RowTerm { row, factor } in topology.parts_of_row(r) {
@@ -239,7 +244,7 @@ fn most_resistance<T: Real>(topology: &Topology, state: &State<T>, r: RowId) -> 
             for step in &topology[link].steps {
                 // a slide: abs(f); a turn: sqrt((abs(f) arm)^2 + couple^2), the arm seen along the axis
                 let resistance = match step.freedom {
-                    Freedom::Slide(_) => l.f.norm() * T::constant(topology[step.first].unit),
+                    Freedom::Slide(_) => l.f.norm() * units[step.first.0],
                     Freedom::Turn(_) | Freedom::Ball => most_moment(&l, point, &state.x[0][step.first.0]),
                 };
                 most = most.larger(resistance * T::constant(scale * factor.abs()));

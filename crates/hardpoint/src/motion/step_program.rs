@@ -273,7 +273,7 @@ impl StepProgram {
             let mut out = moves(topology, &channels, &state);
             let bodies = BodyState::all(&state);
             let (margins, mut limits) = match purpose.margins {
-                true => Margins::new(topology).record(topology, &state),
+                true => Margins::new(model, topology, &geometry).record(topology, &state),
                 false => Default::default(),
             };
             let step =

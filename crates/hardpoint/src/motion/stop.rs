@@ -265,8 +265,9 @@ impl Stop {
                  request more output times, or make the law slower"
             }
             StopKind::JointLimit { begins_beyond: true, .. } => {
-                "begin the motion within the limit, or correct its `min` or `max`: values are those of the joint's \
-                 coordinate, which counts from the design configuration"
+                "begin the motion within the limit, or correct its `min` or `max`: coordinates count from the design \
+                 configuration, but the length of a rod or leg is the whole length, and the articulation of a joint \
+                 between two shafts the angle between them"
             }
             StopKind::JointLimit { begins_beyond: false, .. } => {
                 "shorten the sweep of the drivers, or remove `stop = true` to follow the motion beyond the limit"

@@ -44,6 +44,8 @@ use super::mechanism::{AcceptedPosition, Mechanism};
 use super::parts::PlanGeometry;
 use super::path::Path;
 
+/// Maximum number of halvings of a step from one position to another: a 64th is far shorter than any step of a motion.
+const MOST_STEP_HALVINGS: u32 = 6;
 /// Number of times that an interval is halved, and the bounds of its parts are joined, where it is too long for one
 /// box: eight parts have the cost of eight intervals, but their bounds serve as those of one.
 const MOST_HALVINGS: usize = 3;
@@ -424,7 +426,7 @@ impl<'m> ProvenMotion<'m> {
         Ok(Rc::new(Instant { at, enclosure }))
     }
 
-    /// Position at a time, from the nearest one that is known.
+    /// Position at a time, from the nearest one that is known, in steps that are halved where one is not solved.
     fn solve(&mut self, plan: usize, t: f64) -> Result<AcceptedPosition, TubeFailure> {
         let failed = TubeFailure::NotSolved { time: t };
         let known = self.instants.values().filter_map(|known| known.as_ref().ok()).map(|known| &known.at);
@@ -432,12 +434,25 @@ impl<'m> ProvenMotion<'m> {
             let away = |at: &AcceptedPosition| (at.time - t).abs();
             away(a).total_cmp(&away(b))
         });
-        let near = near.ok_or(failed)?;
-        if near.time == t {
-            return Ok(near.clone());
+        let mut from = near.ok_or(failed)?.clone();
+        let (mut h, mut halvings) = (t - from.time, 0);
+        while from.time != t {
+            let to = if h.abs() >= (t - from.time).abs() { t } else { from.time + h };
+            match self.step(plan, &from, to) {
+                Some(next) => from = next,
+                None if halvings < MOST_STEP_HALVINGS => {
+                    (h, halvings) = (0.5 * (to - from.time), halvings + 1)
+                }
+                None => return Err(failed),
+            }
         }
-        let (mechanism, h) = (&mut self.mechanism, t - near.time);
-        mechanism.saved = near.clone();
+        Ok(from)
+    }
+
+    /// Position at a time from another one; `None` if it is not found.
+    fn step(&mut self, plan: usize, from: &AcceptedPosition, t: f64) -> Option<AcceptedPosition> {
+        let (mechanism, h) = (&mut self.mechanism, t - from.time);
+        mechanism.saved = from.clone();
         mechanism.topology.clone_from(&self.plans[plan]);
         mechanism.restore();
         mechanism.expect_turns(h);
@@ -447,10 +462,9 @@ impl<'m> ProvenMotion<'m> {
             mechanism.state.q[c.0] += (saved.qd[c.0] + 0.5 * h * saved.qdd[c.0]) * h;
         }
         mechanism.state.turn_balls(&mechanism.topology, mechanism.topology.link_ids());
-        let solved = mechanism.drive(Path::Laws, t).and_then(|()| mechanism.solve_within(f64::INFINITY));
-        solved.map_err(|_| failed)?;
+        mechanism.drive(Path::Laws, t).and_then(|()| mechanism.solve_within(f64::INFINITY)).ok()?;
         mechanism.save(t);
-        Ok(mechanism.saved.clone())
+        Some(mechanism.saved.clone())
     }
 
     /// Bounds over the part of the motion between two times.

@@ -12,6 +12,7 @@ use std::sync::Arc;
 use crate::law::Law;
 use crate::linalg::{hermite, segment_at};
 use crate::model::{Metric, Model, Reduction};
+use crate::motion::StopKind;
 use crate::motion::mechanism::driver_units;
 
 use super::analysis::Analysis;
@@ -25,6 +26,9 @@ use super::window::Footprint;
 /// Maximum travel of a driver between two times, rad or sizes of its loop: the error of a polynomial of degree five for
 /// a sine is then `0.15^6 / 46080 = 2e-10`.
 const FINE: f64 = 0.15;
+/// Number of parts, at least, into which the range of the law of a load is divided between two times: a mechanism may
+/// follow a load in either direction, but not faster than this shows.
+const PARTS_OF_LOADS: f64 = 32.0;
 /// Maximum difference between a law and its polynomial of degree five, as a fraction of the range of the law.
 const LAW_RESOLVED: f64 = 1e-8;
 /// Number of parts of an interval, at whose ends this difference is evaluated.
@@ -78,11 +82,20 @@ impl Analysis<'_> {
         })
     }
 
-    /// Output times, and times between them that are so close that no driver moves far between two of them.
+    /// Output times, and times between them that are so close that no driver moves far between two of them, and no load
+    /// changes by a large part of its range.
     pub(super) fn times_within(&self) -> Vec<f64> {
         let model = self.model();
         let units = driver_units(model, self.topology());
-        let laws: Vec<(&Law, f64)> = model.drivers.iter().map(|d| &d.law).zip(units).collect();
+        let of_drivers = model.drivers.iter().map(|d| &d.law).zip(units);
+        let of_loads = model.elements.iter().filter_map(|element| element.kind.law(model));
+        let of_loads = of_loads.filter_map(|law| {
+            let (start, end) = (*model.times.first()?, *model.times.last()?);
+            // FINE units are a part of the range of the law.
+            let range = law.over(start, end).value.reach_from(law.at(start).value());
+            (range > 0.0 && range.is_finite()).then_some((law, range / PARTS_OF_LOADS / FINE))
+        });
+        let laws: Vec<(&Law, f64)> = of_drivers.chain(of_loads).collect();
         let most = Footprint::of(model, true).rows(BYTES);
         (0..6)
             .map(|k| f64::from(1 << k))
@@ -129,7 +142,7 @@ impl Analysis<'_> {
                 let scope = Scope { sensitivities: false, ..design.scope };
                 let next = finer.walked(&design.values, scope, &mut go_on);
                 if next.stop.is_some() {
-                    return;
+                    return self.end_where(&next, design, &mut go_on, solution);
                 }
                 found = Some(next);
             }
@@ -149,11 +162,33 @@ impl Analysis<'_> {
             let finer = self.at_times(values.motion.times.clone());
             let all = finer.walked(&design.values, design.scope, &mut go_on);
             if all.stop.is_some() {
-                return;
+                return self.end_where(&all, design, &mut go_on, solution);
             }
             found = Some(all);
         }
         solution.between = found.map(Arc::new);
+    }
+
+    /// Ends a solution where the same motion at finer times ends: these follow it more closely.
+    fn end_where(
+        &self,
+        finer: &Solution,
+        design: &PreparedDesign,
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+        solution: &mut Solution,
+    ) {
+        let is_interrupted = finer.stop.as_ref().is_some_and(|stop| stop.kind == StopKind::Interrupted);
+        let last = finer.motion.times.last();
+        let times: Vec<f64> =
+            self.model().times.iter().copied().filter(|t| last.is_some_and(|last| t <= last)).collect();
+        if is_interrupted || times.is_empty() {
+            return;
+        }
+        // The last of several windows is complete as it is.
+        if solution.motion.len() == self.model().times.len() {
+            *solution = self.at_times(times).walked(&design.values, design.scope, progress);
+        }
+        solution.stop.clone_from(&finer.stop);
     }
 
     /// The results of a design at all output times.

@@ -69,7 +69,8 @@ pub struct ClearanceMinimum {
     pub place: MinimumPlace,
     /// True if the rate jumps there from negative to positive, since two features are equally near.
     pub is_kink: bool,
-    /// Derivative of the distance by every design variable; NaN for those that are not admissible.
+    /// Derivative of the distance by every design variable; NaN for those that are not admissible, and where the cores
+    /// meet.
     pub d: Vec<f64>,
 }
 
@@ -295,6 +296,10 @@ impl Analysis<'_> {
                 }
                 match event.kind {
                     EventKind::Minimum(place) => {
+                        if at_event.cores_meet {
+                            // The nearest points coincide: no direction leads from one to the other.
+                            d.fill(f64::NAN);
+                        }
                         minima.push(ClearanceMinimum { at: at_event, place, is_kink: other.is_some(), d });
                     }
                     EventKind::Contact(begins) => {
@@ -493,7 +498,7 @@ impl<'m> Curves<'m> {
 
     /// Times within intervals in which a pair may be nearer than at any time so far, or touch unseen, since other parts
     /// of its shapes may pass each other there.
-    fn unseen(&self, p: usize, is_level: &dyn Fn(usize) -> bool) -> Vec<f64> {
+    fn unseen(&self, p: usize, is_left_out: &dyn Fn(usize) -> bool) -> Vec<f64> {
         let (times, samples, reaches) = (&self.times, &self.samples[p], &self.reaches[p]);
         let Some(last) = samples.len().checked_sub(1) else { return Vec::new() };
         let span = times[last] - times[0];
@@ -506,7 +511,7 @@ impl<'m> Curves<'m> {
             let [from, to] = [samples[k].distance, samples[k + 1].distance];
             // The distance changes by no more than the shapes move.
             let at_least = 0.5 * (from[0] + to[0] - speed * h);
-            if h <= NARROW * span || at_least >= least || from[0] <= 0.0 || to[0] <= 0.0 || is_level(k) {
+            if h <= NARROW * span || at_least >= least || from[0] <= 0.0 || to[0] <= 0.0 || is_left_out(k) {
                 continue;
             }
             // Accelerations at both ends of the cubic polynomial through distances and rates there.
@@ -596,7 +601,9 @@ impl<'m> Curves<'m> {
             located.events.extend(events);
             return;
         }
-        let rates_known = samples.iter().all(|s| s.distance[1].is_finite());
+        let is_known = |k: usize| samples[k].distance[1].is_finite();
+        // Per interval: both of its ends have rates.
+        let has_rates = |k: usize| is_known(k) && is_known(k + 1);
         let mut add = Vec::new();
         let level = |k: usize| {
             let same = |x: f64, plateau: &Plateau| (x - plateau.value).abs() <= FLAT * self.size;
@@ -626,61 +633,61 @@ impl<'m> Curves<'m> {
         }
         let curve = SampledCurve {
             times,
-            orders: if rates_known { 3 } else { 1 },
+            orders: 3,
             // Those where features change are located.
             kinks: &[],
             values: samples.iter().map(|s| s.distance).collect(),
         };
-        if rates_known {
-            // Per time: the step of Newton's method to the nearest stationary time.
-            let is_minimum = |k: usize| {
-                let [_, rate, acceleration] = samples[k].distance;
-                // Where the distance does not change over a part of the motion, the sign of both is that of round-off.
-                let is_curved = acceleration * span * span > FLAT * self.size;
-                let is_beside_level = is_level(k - 1) || is_level(k);
-                is_curved && !is_beside_level && rate.abs() <= LOCATED * span * acceleration
-            };
-            let (mut found, mut kinks): (Vec<f64>, Vec<[f64; 2]>) = (Vec::new(), Vec::new());
-            for k in (1..last).filter(|k| is_minimum(*k)) {
-                if found.last().is_none_or(|t| times[k] - t > SAME_TIME * span) {
-                    found.push(times[k]);
+        // Per time: the step of Newton's method to the nearest stationary time.
+        let is_minimum = |k: usize| {
+            let [_, rate, acceleration] = samples[k].distance;
+            // Where the distance does not change over a part of the motion, the sign of both is that of round-off.
+            let is_curved = acceleration * span * span > FLAT * self.size;
+            let is_beside_level = is_level(k - 1) || is_level(k);
+            is_curved && !is_beside_level && rate.abs() <= LOCATED * span * acceleration
+        };
+        let (mut found, mut kinks): (Vec<f64>, Vec<[f64; 2]>) = (Vec::new(), Vec::new());
+        for k in (1..last).filter(|k| is_minimum(*k)) {
+            if found.last().is_none_or(|t| times[k] - t > SAME_TIME * span) {
+                found.push(times[k]);
+            }
+        }
+        for k in (0..last).filter(|k| has_rates(*k) && !is_level(*k)) {
+            let [from, to] = [k, k + 1].map(|k| samples[k].distance[1]);
+            let changes = from < 0.0 && to > 0.0;
+            let at = |t: f64| curve.at(k, t)[0];
+            let inner = curve.turns(k).into_iter().filter(|t| {
+                let h = SAME_TIME * span;
+                at(t - h) >= at(*t) && at(t + h) >= at(*t)
+            });
+            let mut candidates: Vec<f64> = inner.collect();
+            if changes && candidates.is_empty() {
+                candidates.push(0.5 * (times[k] + times[k + 1]));
+            }
+            for t in candidates {
+                let is_found = found.iter().any(|f| (f - t).abs() <= SAME_TIME * span);
+                let narrow = times[k + 1] - times[k] <= LOCATED * span;
+                if is_found {
+                    continue;
+                }
+                if narrow {
+                    // The rate jumps there: nothing is gained by further times.
+                    let [near, far] = if value(k) <= value(k + 1) { [k, k + 1] } else { [k + 1, k] };
+                    kinks.push([times[near], times[far]]);
+                    continue;
+                }
+                add.push(t);
+                if changes {
+                    add.push(0.5 * (times[k] + times[k + 1]));
                 }
             }
-            for k in (0..last).filter(|k| !is_level(*k)) {
-                let [from, to] = [k, k + 1].map(|k| samples[k].distance[1]);
-                let changes = from < 0.0 && to > 0.0;
-                let at = |t: f64| curve.at(k, t)[0];
-                let inner = curve.turns(k).into_iter().filter(|t| {
-                    let h = SAME_TIME * span;
-                    at(t - h) >= at(*t) && at(t + h) >= at(*t)
-                });
-                let mut candidates: Vec<f64> = inner.collect();
-                if changes && candidates.is_empty() {
-                    candidates.push(0.5 * (times[k] + times[k + 1]));
-                }
-                for t in candidates {
-                    let is_found = found.iter().any(|f| (f - t).abs() <= SAME_TIME * span);
-                    let narrow = times[k + 1] - times[k] <= LOCATED * span;
-                    if is_found {
-                        continue;
-                    }
-                    if narrow {
-                        // The rate jumps there: nothing is gained by further times.
-                        let [near, far] = if value(k) <= value(k + 1) { [k, k + 1] } else { [k + 1, k] };
-                        kinks.push([times[near], times[far]]);
-                        continue;
-                    }
-                    add.push(t);
-                    if changes {
-                        add.push(0.5 * (times[k] + times[k + 1]));
-                    }
-                }
-            }
-            found.into_iter().for_each(|t| event(t, EventKind::Minimum(MinimumPlace::Inside)));
-            let kind = EventKind::Minimum(MinimumPlace::Inside);
-            let of_kink = |[time, other]: [f64; 2]| Event { pair: p, time, kink: Some(other), kind };
-            located.events.extend(kinks.into_iter().map(of_kink));
-        } else {
+        }
+        found.into_iter().for_each(|t| event(t, EventKind::Minimum(MinimumPlace::Inside)));
+        let kind = EventKind::Minimum(MinimumPlace::Inside);
+        let of_kink = |[time, other]: [f64; 2]| Event { pair: p, time, kink: Some(other), kind };
+        located.events.extend(kinks.into_iter().map(of_kink));
+        // By values alone, where a rate is missing.
+        if !(0..last).all(has_rates) {
             let steps: Vec<usize> = (0..=last).collect();
             for run in self.equal(samples, &steps) {
                 let (first, end) = (run[0], run[run.len() - 1]);
@@ -688,6 +695,13 @@ impl<'m> Curves<'m> {
                     continue;
                 }
                 let (before, after) = (first - 1, end + 1);
+                // Rates lead to the minimum unless one is missing on its side of the lowest time.
+                let lower = |a: usize, b: usize| if value(b) < value(a) { b } else { a };
+                let lowest = (first..=end).reduce(lower).unwrap_or(first);
+                let side = if samples[lowest].distance[1] > 0.0 { lowest - 1 } else { lowest };
+                if has_rates(side) || is_minimum(lowest) {
+                    continue;
+                }
                 if value(before) < value(first) || value(after) < value(end) {
                     continue;
                 }
@@ -708,8 +722,6 @@ impl<'m> Curves<'m> {
                     // smooth minimum ends like this long before its interval is narrow, one at a kink does not.
                     2 if !is_narrow => add.push(0.5 * (times[first] + times[end])),
                     _ => {
-                        let lower = |a: usize, b: usize| if value(b) < value(a) { b } else { a };
-                        let lowest = (first..=end).reduce(lower).unwrap_or(first);
                         let [left, right] = [lowest - 1, lowest + 1].map(|k| times[k]);
                         let is_kink = times[end] - times[first] < OF_KINK * span;
                         if is_kink && right - left > LOCATED * span {
@@ -721,7 +733,7 @@ impl<'m> Curves<'m> {
                 }
             }
         }
-        add.extend(self.unseen(p, &is_level).into_iter().filter(|_| rates_known));
+        add.extend(self.unseen(p, &|k| !has_rates(k) || is_level(k)));
         // Contacts: from a time at which the sign changes, Newton's method or the polynomial.
         for k in 0..last {
             let [a, b] = [value(k), value(k + 1)];

@@ -23,6 +23,8 @@ const GRAZING: f64 = 1e-6;
 /// Maximum number of times that the motion is solved again; each pass is nearer to the times by several digits, or
 /// halves an interval.
 const MOST_PASSES: usize = 40;
+/// Rise of a motion without rates above three times in a row that counts, in rises of the parabola through them.
+const VERTEX_ERROR: f64 = 4.0;
 /// Pieces of an interval of a motion without rates, in which an extremum is looked for.
 const PIECES: usize = 4;
 
@@ -194,7 +196,7 @@ impl Analysis<'_> {
         let mut times = self.times_within();
         let mut solution = Solution::default();
         let mut located = Vec::new();
-        for _ in 0..MOST_PASSES {
+        for pass in 1..=MOST_PASSES {
             solution = self.beyond_stops(&times, design, false);
             let mut add = Vec::new();
             located.clear();
@@ -202,7 +204,12 @@ impl Analysis<'_> {
                 let Some(curve) = curve_of(limit, &solution) else { continue };
                 for end in LimitEnd::ALL {
                     if let Some(bound) = limit.end(end) {
-                        let mut found = locate(&curve, bound, end, limit.tolerance(model), &mut add);
+                        let tolerance = limit.tolerance(model);
+                        if pass < MOST_PASSES {
+                            look_between(&curve, bound, end, tolerance, &mut add);
+                        }
+                        let mut found =
+                            locate(&curve, bound, end, tolerance, (pass == MOST_PASSES, &mut add));
                         located.extend(found.drain(..).map(|(time, leaves)| Located {
                             limit: k,
                             time,
@@ -240,20 +247,60 @@ fn curve_of<'s>(limit: &JointLimit, solution: &'s Solution) -> Option<SampledCur
     (!curve.values.is_empty()).then_some(curve)
 }
 
-/// Crossings of an end of a range that are located, each with true if the value leaves the range there; times at which
-/// the motion must be solved to locate the others are added.
-fn locate(
+/// Adds times at which a motion without rates must be solved, since its value may reach an end of its range, or return
+/// from beyond, between three times in a row: the vertex of the parabola through them is near the end.
+fn look_between(
     curve: &SampledCurve<'_, f64>,
     bound: f64,
     end: LimitEnd,
     tolerance: f64,
     add: &mut Vec<f64>,
+) {
+    let times = &curve.times[..curve.values.len()];
+    let span = times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first);
+    for (k, three) in times.windows(3).enumerate() {
+        if curve.known(k) != 1 || three[2] - three[0] <= AT_REST * span {
+            continue;
+        }
+        let [a, b, c] = [k, k + 1, k + 2].map(|k| end.sign() * (curve.values[k][0] - bound));
+        let side = if a.max(b).max(c) <= tolerance {
+            1.0
+        } else if a.min(b).min(c) > tolerance {
+            -1.0
+        } else {
+            continue;
+        };
+        // Newton's form: y = b + s (t - t_1) + q (t - t_1) (t - t_0)
+        let [first, second] = [(b - a) / (three[1] - three[0]), (c - b) / (three[2] - three[1])];
+        let bend = (second - first) / (three[2] - three[0]);
+        let slope = first + bend * (three[1] - three[0]);
+        let vertex = three[1] - 0.5 * slope / bend;
+        if !(side * bend < 0.0 && three[0] < vertex && vertex < three[2]) {
+            continue;
+        }
+        let height = side * (b - 0.25 * slope * slope / bend);
+        let most = [a, b, c].into_iter().map(|y| side * y).fold(f64::NEG_INFINITY, f64::max);
+        let rise = height - most;
+        if most + VERTEX_ERROR * rise > side * tolerance {
+            add.extend([0.5 * (three[0] + three[1]), vertex, 0.5 * (three[1] + three[2])]);
+        }
+    }
+}
+
+/// Crossings of an end of a range that are located, each with true if the value leaves the range there; times at which
+/// the motion must be solved to locate the others are added. The last time all of them are as located as they are.
+fn locate(
+    curve: &SampledCurve<'_, f64>,
+    bound: f64,
+    end: LimitEnd,
+    tolerance: f64,
+    (is_last, add): (bool, &mut Vec<f64>),
 ) -> Vec<(f64, bool)> {
     let (times, last) = (curve.times, curve.values.len() - 1);
     let span = times[last] - times[0];
     // Positive beyond the end.
     let beyond = |k: usize| end.sign() * (curve.values[k][0] - bound);
-    let rate = |k: usize| end.sign() * curve.values[k][1];
+    let rate = |k: usize| if curve.known(k) > 1 { end.sign() * curve.values[k][1] } else { f64::NAN };
     let mut nodes: Vec<usize> = Vec::new();
     let first = add.len();
     for k in 0..last {
@@ -263,7 +310,7 @@ fn locate(
             let t = if part[0] <= t && t <= part[1] { t } else { 0.5 * (part[0] + part[1]) };
             let near = if t - times[k] <= times[k + 1] - t { k } else { k + 1 };
             let step = beyond(near).abs() <= LOCATED * span * rate(near).abs();
-            if step || beyond(near) == 0.0 || width <= LOCATED * span {
+            if step || beyond(near) == 0.0 || width <= LOCATED * span || is_last {
                 if nodes.last().is_none_or(|n| times[near] - times[*n] > SAME_TIME * span) {
                     nodes.push(near);
                 }

@@ -29,6 +29,7 @@ struct Direction {
     /// Workspace of this variable alone: coordinates that it does not reach keep a rate of zero.
     direct: DirectDifferentiation<f64>,
     along: StateAlong,
+    margins: Margins<Dual>,
 }
 
 impl Analysis<'_> {
@@ -50,14 +51,16 @@ impl Analysis<'_> {
             let field = design.fields[v.0].clone().with_openings(openings);
             let mut values: Vec<Dual> = design.values.iter().map(|b| Dual::constant(*b)).collect();
             values[v.0] = Dual::variable(design.values[v.0]);
+            let geometry = design_map.geometry(&values);
             Direction {
                 field: PlanVelocity::new(topology, &field),
                 direct: DirectDifferentiation::new(model, topology),
-                along: StateAlong::new(model, topology, &design_map.geometry(&values)),
+                along: StateAlong::new(model, topology, &geometry),
+                margins: Margins::new(model, topology, &geometry),
             }
         };
         let mut directions: Vec<Direction> = variables.iter().map(direction).collect();
-        let (mut values, mut derivatives) = (Margins::<f64>::new(topology), Margins::<Dual>::new(topology));
+        let mut values = Margins::new(model, topology, &design.geometry);
         let mut found = MarginDerivatives::default();
         // Sensitivities are solved where derivatives are requested only.
         let only_position = PreparedDesign {
@@ -79,16 +82,17 @@ impl Analysis<'_> {
             if let Some(equilibrium) = equilibrium {
                 equilibrium.differentiate(one, t, |_, rates| rates_of_openings.push(rates.to_vec()));
             }
-            let derivative = |(v, Direction { field, direct, along }): (&VariableId, &mut Direction)| {
-                let mechanism = &mut one.mechanism;
-                if let Some(rates) = rates_of_openings.get(v.0) {
-                    field.set_last_shifts(rates);
-                }
-                field.set_time(|d| mechanism.parts.law_of(d.0), t);
-                direct.solve_position(&mechanism.topology, &mut mechanism.state, field);
-                along.set(model, mechanism, &direct.flow.speeds[0]);
-                derivatives.derivative(&mechanism.topology, &along.state, margin.block).unwrap_or(0.0)
-            };
+            let derivative =
+                |(v, Direction { field, direct, along, margins }): (&VariableId, &mut Direction)| {
+                    let mechanism = &mut one.mechanism;
+                    if let Some(rates) = rates_of_openings.get(v.0) {
+                        field.set_last_shifts(rates);
+                    }
+                    field.set_time(|d| mechanism.parts.law_of(d.0), t);
+                    direct.solve_position(&mechanism.topology, &mut mechanism.state, field);
+                    along.set(model, mechanism, &direct.flow.speeds[0]);
+                    margins.derivative(&mechanism.topology, &along.state, margin.block).unwrap_or(0.0)
+                };
             found.d.push(variables.iter().zip(&mut directions).map(derivative).collect());
         });
         found

@@ -138,7 +138,7 @@ impl Analysis<'_> {
             slopes: StepValues::new(model, variables, rows),
         };
         self.make_room(&mut window.motion, rows);
-        let mut margins = Margins::new(topology);
+        let mut margins = Margins::new(self.solved_model(), topology, &design.geometry);
         let stop = walk.all(&mut window, progress, |window, solved, count, solver| {
             let times = &model.times[window.done..window.done + count];
             let k = window.done - window.first;

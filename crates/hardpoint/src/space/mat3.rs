@@ -6,6 +6,9 @@ use crate::number::{Dual, Real};
 
 use super::Vec3;
 
+/// Terms of the series of a half angle: the next one is below round-off up to two turns.
+const HALF_ANGLE_TERMS: u32 = 24;
+
 /// Rotation matrix, stored as the unit vectors of the rotated frame: `A = [f g h]` (paper Eq. 2.1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mat3<T = f64> {
@@ -62,6 +65,28 @@ impl<T: Real> Mat3<T> {
             let along = (axis * axis.dot(e)).spread();
             // Rodrigues: e cos + (n x e) sin + n (n . e) (1 - cos)
             e.spread() * c + axis.cross(e).spread() * s + along * (one - c)
+        };
+        let [x, y, z] = Vec3::AXES;
+        Self { cols: [turn(x), turn(y), turn(z)] }
+    }
+
+    /// Rotation by a rotation vector, rad: smooth at zero, and exact to round-off up to two turns.
+    pub fn about_vector(v: Vec3<T>) -> Self {
+        let one = T::one();
+        let half = v * T::constant(0.5);
+        let s = half.dot(half);
+        // cos sqrt(s) and sin sqrt(s) / sqrt(s), by their series
+        let (mut c, mut k) = (one, one);
+        for n in (1..=HALF_ANGLE_TERMS).rev() {
+            let n = 2.0 * f64::from(n);
+            c = one - s * c * T::constant(1.0 / ((n - 1.0) * n));
+            k = one - s * k * T::constant(1.0 / (n * (n + 1.0)));
+        }
+        let (half, two) = (half * k, T::constant(2.0));
+        let turn = |e: Vec3| {
+            // e + 2 c (h x e) + 2 h x (h x e), of the unit quaternion (c, h)
+            let turned = half.cross(e.spread());
+            e.spread() + (turned * c + half.cross(turned)) * two
         };
         let [x, y, z] = Vec3::AXES;
         Self { cols: [turn(x), turn(y), turn(z)] }
@@ -143,5 +168,26 @@ impl<T: Real> Mul for Mat3<T> {
             let [f, g, h] = o.cols;
             Self { cols: [self * f, self * g, self * h] }
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rotation_vector_is_smooth_at_zero_and_exact_up_to_two_turns() {
+        for angle in [0.0, 1e-9, 0.3, 2.0, 3.2, 6.5, 12.5] {
+            let v = Vec3::new(2.0, -1.0, 2.0) * (angle / 3.0);
+            let off = Mat3::about_vector(v).cols.map(|c| c.to_array()).as_flattened().to_vec();
+            let known = Mat3::from_rotation_vector(v).cols.map(|c| c.to_array()).as_flattened().to_vec();
+            assert!(off.iter().zip(&known).all(|(a, b)| (a - b).abs() < 1e-13), "{angle}: {off:?} {known:?}");
+        }
+        // d exp(b u) / db = u x at zero
+        let u = Vec3::new(0.3, -0.8, 0.5);
+        let turned = Mat3::about_vector(u.spread::<Dual>() * Dual::variable(0.0));
+        for (column, e) in turned.cols.iter().zip(Vec3::AXES) {
+            assert_eq!([column.x.d, column.y.d, column.z.d], u.cross(e).to_array());
+        }
     }
 }

@@ -20,6 +20,7 @@ pub use error::TopologyError;
 pub use ids::{BlockId, ClosureId, CoordinateId, Ids, LinkId, RowId};
 pub(crate) use openings::{OpenTree, dependence, open_tree};
 pub use redundancy::Redundancy;
+pub(crate) use size::units_of;
 pub use start::StartCoordinates;
 
 use std::ops::Range;
@@ -185,7 +186,9 @@ pub struct Closure {
     pub entries: Vec<ClosureColumn>,
     /// Links around the loop that it closes.
     pub links: Vec<LoopLink>,
-    /// Extent of the joints of the loop in the design configuration, m; reference length for gaps.
+    /// Joints whose extent is its size.
+    pub extent: Vec<JointId>,
+    /// Extent of the joints of the loop in the nominal design, m; reference length for gaps.
     pub size: f64,
 }
 

@@ -303,6 +303,7 @@ fn add_closure(
         block: None,
         entries: Vec::new(),
         links,
+        extent: Vec::new(),
         size: 1.0,
     });
 }

@@ -86,6 +86,14 @@ impl Checker<'_> {
                 .help("name a driver, or a force of type `force`, `wheel_force`, `moment` or `tyre`");
             return;
         }
+        if self.case_formulas.contains_key(&(case_name.as_str(), name)) {
+            let message =
+                format!("a formula defines a parameter of the law of `{name}` in case `{case_name}`");
+            self.fault("HP0262", at, message)
+                .note("the law of a force is the same in every design")
+                .help("let what the law multiplies depend on the parameter");
+            return;
+        }
         if let Some(t) = times.iter().find(|t| !law.at(**t).value().is_finite()) {
             let message =
                 format!("the law of `{name}` in case `{case_name}` has no finite value at t = {t} s");

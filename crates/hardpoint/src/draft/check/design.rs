@@ -88,11 +88,18 @@ impl Checker<'_> {
         let field = self.shape_field(field, owner, here);
         let (bodies, field) = (bodies.into_iter().collect::<Option<Vec<BodyId>>>()?, field?);
         let (mut moved, mut rotated): (BTreeSet<usize>, Vec<JointId>) = Default::default();
-        for (j, joint) in self.model.joints.iter().enumerate() {
-            if !joint.bodies.iter().any(|b| bodies.contains(b)) {
+        // What carries a driver only names points, which are among those of the bodies below.
+        for (j, joint) in self.model.joints.iter().enumerate().filter(|(_, joint)| !joint.unnamed) {
+            let mut is_on = joint.bodies.map(|b| bodies.contains(&b));
+            // A joint stays closed: both its markers move, unless a rod lies between them.
+            if !joint.kind.is_rod() {
+                is_on = [is_on[0] || is_on[1]; 2];
+            }
+            let ends = joint.at.iter().zip(is_on).filter(|(h, is_on)| *is_on && **h != UNPLACED);
+            moved.extend(ends.map(|(h, _)| h.0));
+            if !is_on[0] {
                 continue;
             }
-            moved.extend(joint.at.iter().filter(|h| **h != UNPLACED).map(|h| h.0));
             let axes = [joint.axis, joint.axis2].into_iter().flatten();
             moved.extend(axes.clone().filter_map(Direction::hardpoints).flatten().map(|h| h.0));
             if axes.clone().any(|a| matches!(a, Direction::Along(_))) {

@@ -129,14 +129,28 @@ impl Checker<'_> {
                 false => ("has no finite value", "are finite".to_owned()),
                 true => ("changes too fast", format!("are below {LARGEST_RATE:e} in SI units")),
             };
-            self.fault("HP0214", at, format!("the law of {of} {what} at t = {t} s"))
-                .note(format!(
-                    "value {}, first derivative {}, second derivative {} there",
-                    number(0),
-                    number(1),
-                    number(2)
-                ))
-                .help(format!("change the law, or the times, so that all three {remedy}"));
+            // A table ends, and a root begins.
+            let end = finite_until(|t| all(t, &|x| x.is_finite()), times, t).filter(|_| written[0].is_nan());
+            let (note, help) = match end {
+                Some(end) => (
+                    format!(
+                        "its values {} at t = {} s",
+                        if end < t { "end" } else { "begin" },
+                        tenth_digit(end)
+                    ),
+                    "change the law, or the times, so that it has a value at each of them".to_owned(),
+                ),
+                None => (
+                    format!(
+                        "value {}, first derivative {}, second derivative {} there",
+                        number(0),
+                        number(1),
+                        number(2)
+                    ),
+                    format!("change the law, or the times, so that all three {remedy}"),
+                ),
+            };
+            self.fault("HP0214", at, format!("the law of {of} {what} at t = {t} s")).note(note).help(help);
         }
     }
 
@@ -221,5 +235,27 @@ impl Checker<'_> {
             Some(CouplerTerm { joint, coordinate, coefficient })
         });
         terms.into_iter().collect()
+    }
+}
+
+/// A number with ten digits: laws overlap their ends by round-off.
+fn tenth_digit(x: f64) -> String {
+    short(format!("{x:.9e}").parse().unwrap_or(x))
+}
+
+/// Time at which a law that is not finite at time t, but at another output time, begins or ends to be; to round-off.
+fn finite_until(is_finite: impl Fn(f64) -> bool, times: &[f64], t: f64) -> Option<f64> {
+    let distance = |x: &f64| (x - t).abs();
+    let near = times.iter().filter(|x| is_finite(**x)).min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    let (mut inside, mut outside) = (*near?, t);
+    if is_finite(outside) {
+        return None;
+    }
+    loop {
+        let middle = 0.5 * (inside + outside);
+        if middle == inside || middle == outside {
+            return Some(inside);
+        }
+        *(if is_finite(middle) { &mut inside } else { &mut outside }) = middle;
     }
 }

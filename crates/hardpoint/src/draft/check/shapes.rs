@@ -282,7 +282,7 @@ impl Checker<'_> {
             let note = if only_neighbours {
                 "shapes of bodies that share a joint count only where both are named as shapes"
             } else {
-                "two shapes count if they are on different bodies and not both planes"
+                "two shapes count if they move relative to each other and are not both planes"
             };
             self.fault("HP0264", here.key("between"), message)
                 .note(note)
@@ -324,7 +324,30 @@ impl Checker<'_> {
     fn moves(&self, shapes: [ShapeId; 2]) -> bool {
         let [a, b] = shapes.map(|s| &self.model.shapes[s.0]);
         let are_planes = [a, b].iter().all(|s| matches!(s.kind, ShapeKind::Plane { .. }));
-        !are_planes && a.bodies(&self.model) != b.bodies(&self.model)
+        let are_rigid = match (&a.bodies(&self.model)[..], &b.bodies(&self.model)[..]) {
+            ([p], [q]) => p == q,
+            // Two rods between the same bodies turn about their own ends, unless these are the same.
+            _ => self.have_the_same_ends([a, b]),
+        };
+        !are_planes && !are_rigid
+    }
+
+    /// True if two shapes between two bodies have their ends at the same points, in either order.
+    fn have_the_same_ends(&self, shapes: [&Shape; 2]) -> bool {
+        let ends = shapes.map(|s| match s.kind {
+            ShapeKind::Capsule { ends } | ShapeKind::Cylinder { ends, .. } => Some(ends.map(|p| {
+                let point = &self.model.points[p.0];
+                (point.body, point.at)
+            })),
+            ShapeKind::Sphere { .. }
+            | ShapeKind::Ring { .. }
+            | ShapeKind::Tyre { .. }
+            | ShapeKind::Plane { .. }
+            | ShapeKind::Hull { .. }
+            | ShapeKind::Mesh { .. } => None,
+        });
+        let [Some([a, b]), Some([c, d])] = ends else { return false };
+        (a, b) == (c, d) || (a, b) == (d, c)
     }
 
     /// True if bodies of two shapes share a joint.
