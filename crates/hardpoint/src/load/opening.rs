@@ -22,7 +22,6 @@ impl<T: Real> Opening<T> {
     pub fn between(i: &Pose<T>, j: &Pose<T>, near: T) -> Self {
         let [x_i, y_i, z_i] = i.rot.cols;
         let [x_j, y_j, z_j] = j.rot.cols;
-        let d = i.rot.transpose_mul(j.r - i.r);
         // M = A_i^T A_j = Rx(alpha) Ry(beta) Rz(gamma)
         let [m11, m12, m13] = [x_i.dot(x_j), x_i.dot(y_j), x_i.dot(z_j)];
         let [m23, m33] = [y_i.dot(z_j), z_i.dot(z_j)];
@@ -35,18 +34,7 @@ impl<T: Real> Opening<T> {
         // l_alpha = a2 x a3 / D, l_beta = a3 x a1 / D, l_gamma = a1 x a2 / D, of the axes a1 = x_i,
         // a2 = y_i cos(alpha) + z_i sin(alpha), a3 = z_j, with D = a1 . (a2 x a3) = cos(beta)
         let a2 = y_i * (m33 * per) - z_i * (m23 * per);
-        let turn = |l: Vec3<T>| Wrench::moment(l * per);
-        let slide = |axis: Vec3<T>| Wrench::force(axis, j.r);
-        // Without `map`, which the compiler does not inline for arrays of this size.
-        let wrenches = [
-            slide(x_i),
-            slide(y_i),
-            slide(z_i),
-            turn(a2.cross(z_j)),
-            turn(z_j.cross(x_i)),
-            turn(x_i.cross(a2)),
-        ];
-        Self { coordinates: [d.x, d.y, d.z, alpha, beta, gamma], in_design: [T::zero(); 6], wrenches }
+        Self::of_chain(i, j, [alpha, beta, gamma], [a2.cross(z_j), z_j.cross(x_i), x_i.cross(a2)], per)
     }
 
     /// Opening of a cross whose pins are along z_i and x_j, with gamma, the angle about z_i, within half a turn of
@@ -54,7 +42,6 @@ impl<T: Real> Opening<T> {
     pub fn of_cross(i: &Pose<T>, j: &Pose<T>, near: T) -> Self {
         let [x_i, y_i, z_i] = i.rot.cols;
         let [x_j, y_j, z_j] = j.rot.cols;
-        let d = i.rot.transpose_mul(j.r - i.r);
         // M = A_i^T A_j = Rz(gamma) Ry(beta) Rx(alpha)
         let [m11, m21, m31] = [x_i.dot(x_j), y_i.dot(x_j), z_i.dot(x_j)];
         let [m32, m33] = [z_i.dot(y_j), z_i.dot(z_j)];
@@ -67,16 +54,24 @@ impl<T: Real> Opening<T> {
         // l_alpha = a2 x a1 / D, l_beta = a1 x a3 / D, l_gamma = a3 x a2 / D, of the axes a1 = z_i,
         // a2 = y_i cos(gamma) - x_i sin(gamma), a3 = x_j, with D = a3 . (a2 x a1) = cos(beta)
         let a2 = y_i * (m11 * per) - x_i * (m21 * per);
+        Self::of_chain(i, j, [alpha, beta, gamma], [a2.cross(z_i), z_i.cross(x_j), x_j.cross(a2)], per)
+    }
+
+    /// Opening with these angles; the moment of each is its direction times `per`.
+    #[inline(always)]
+    fn of_chain(
+        i: &Pose<T>,
+        j: &Pose<T>,
+        [alpha, beta, gamma]: [T; 3],
+        [about_x, about_y, about_z]: [Vec3<T>; 3],
+        per: T,
+    ) -> Self {
+        let [x_i, y_i, z_i] = i.rot.cols;
+        let d = i.rot.transpose_mul(j.r - i.r);
         let turn = |l: Vec3<T>| Wrench::moment(l * per);
         let slide = |axis: Vec3<T>| Wrench::force(axis, j.r);
-        let wrenches = [
-            slide(x_i),
-            slide(y_i),
-            slide(z_i),
-            turn(a2.cross(z_i)),
-            turn(z_i.cross(x_j)),
-            turn(x_j.cross(a2)),
-        ];
+        // Without `map`, which the compiler does not inline for arrays of this size.
+        let wrenches = [slide(x_i), slide(y_i), slide(z_i), turn(about_x), turn(about_y), turn(about_z)];
         Self { coordinates: [d.x, d.y, d.z, alpha, beta, gamma], in_design: [T::zero(); 6], wrenches }
     }
 }
