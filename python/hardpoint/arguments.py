@@ -179,7 +179,9 @@ def named(function: Called) -> Called:
 
 def _sentence(name: str, signature: inspect.Signature, given: dict[str, Any], why: TypeError) -> str:
     known = [p.name for p in signature.parameters.values() if p.name != "self" and p.kind in (p.POSITIONAL_OR_KEYWORD, p.KEYWORD_ONLY)]
-    strange = next((argument for argument in given if argument not in known), None)
+    # A function that takes arguments of any name lacks another one.
+    takes_any = any(p.kind == p.VAR_KEYWORD for p in signature.parameters.values())
+    strange = None if takes_any else next((argument for argument in given if argument not in known), None)
     if strange is None:
         return f"`{name}`: {why}"
     near = get_close_matches(strange, known, 1)

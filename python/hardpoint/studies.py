@@ -154,8 +154,10 @@ class DriverTable(dict):
         places = list(same_shape("drivers", {name: numbers(f"driver `{name}`", at[name]) for name in axes}).values())
         cells, weights = [], []
         for (name, knots), x in zip(axes.items(), places):
-            if not np.all((knots[0] <= x) & (x <= knots[-1])):
+            # Numbers of the user that are one in SI may differ in their last bit.
+            if not np.all((np.nextafter(knots[0], -np.inf) <= x) & (x <= np.nextafter(knots[-1], np.inf))):
                 raise UsageError.saying(f"`{name}` is outside of the table's range {knots[0]:g} .. {knots[-1]:g}")
+            x = np.clip(x, knots[0], knots[-1])
             cell = np.clip(np.searchsorted(knots, x, side="right") - 1, 0, len(knots) - 2)
             width = knots[cell + 1] - knots[cell]
             cells.append(cell)

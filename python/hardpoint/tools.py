@@ -10,6 +10,7 @@ import csv
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -86,10 +87,16 @@ def saved(model: Model) -> Iterator[Path]:
             yield own
             return
     with tempfile.TemporaryDirectory() as folder:
-        for name, text in model._native.files.items():
+        texts = model._native.files
+        for name in {*texts, *model._native.file_names}:
             path = Path(folder, name)
             path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(text, encoding="utf-8", newline="\n")
+            if name in texts:
+                path.write_text(texts[name], encoding="utf-8", newline="\n")
+            elif model._whereabouts is not None:
+                # The contents of shapes are not kept as texts.
+                with contextlib.suppress(FileNotFoundError):
+                    shutil.copyfile(Path(model._whereabouts, name), path)
         path = Path(folder, "model.toml")
         path.write_bytes(model.text.encode())
         yield path

@@ -143,6 +143,12 @@ impl Model {
         self.whole.texts.clone()
     }
 
+    /// Names of all files that it reads, relative to its folder.
+    #[getter]
+    fn file_names(&self) -> Vec<String> {
+        self.whole.file_names().into_iter().collect()
+    }
+
     /// Contents of the file as JSON, with the names of the file.
     fn document(&self) -> PyResult<String> {
         let table: toml::Table = toml::from_str(self.whole.text())

@@ -134,7 +134,7 @@ impl Run {
         if self.solution.sensitivities.variables == 0 {
             return Ok(Vec::new());
         }
-        let facts = Facts::new(file, model.analysis(self.case)?.topology(), Some(&self.solution));
+        let facts = Facts::new(file, model.analysis(self.case)?, Some(&self.solution));
         let all = diagnose::variables(file, &facts);
         let why = |b: usize| {
             let name = format!("`{}`", file.model.variables[b].name);
@@ -257,7 +257,7 @@ impl Run {
     fn summary(&self) -> PyResult<String> {
         let (file, model) = (self.file(), self.model.get());
         let course = self.course();
-        let mut summary = Summary::new(file, model.analysis(self.case)?.topology(), &course);
+        let mut summary = Summary::new(file, model.analysis(self.case)?, &course);
         summary.diagnostics = diagnose::all(file, &summary, &course, None);
         Ok(json(&summary))
     }
@@ -266,7 +266,7 @@ impl Run {
     fn diagnostics(&self) -> PyResult<String> {
         let (file, model) = (self.file(), self.model.get());
         let course = self.course();
-        let summary = Summary::new(file, model.analysis(self.case)?.topology(), &course);
+        let summary = Summary::new(file, model.analysis(self.case)?, &course);
         let all = diagnose::all(file, &summary, &course, None);
         Ok(Value::Array(all.iter().map(|d| diagnostic_json(file, d)).collect()).to_string())
     }
@@ -286,7 +286,7 @@ impl Run {
         }
         Ok(py.detach(|| {
             let course = Course::of(&file.model, &today);
-            let mut summary = Summary::new(file, analysis.topology(), &course);
+            let mut summary = Summary::new(file, analysis, &course);
             summary.diagnostics = diagnose::all(file, &summary, &course, None);
             let changed = is_changed.then(|| ChangedDesign {
                 name: "changed".into(),

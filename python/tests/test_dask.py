@@ -95,6 +95,11 @@ def mirrored(model):
     return model.with_coordinates(), {"ranges": {"tie_rod_inner.x": (-2, 2)}, "samples": 700}
 
 
+def test_a_missing_store_is_named(model, client):
+    with pytest.raises(hardpoint.UsageError, match="`sweep`: missing a required argument: 'store'"):
+        hardpoint.dask.sweep(model, client=client, samples=64)
+
+
 @pytest.mark.parametrize(
     "of",
     [

@@ -102,6 +102,15 @@ def test_a_table_over_one_driver_is_that_of_scipy(model):
     assert found("wheel_centre.z", spring_drive=x) == pytest.approx(expected, abs=1e-11)
 
 
+def test_a_table_has_values_at_the_ends_that_were_asked_for():
+    model = hardpoint.read(Path(__file__).resolve().parents[2] / "models/four_bar.toml")
+    for ends in ((-30, 30), (-0.1, 12.3), (numpy.nextafter(0.3, 1), 7)):
+        table = model.table({"motor": ends}, of="midpoint_x", error=1)
+        exact = model.at(motor=numpy.array(ends))["midpoint_x"]
+        assert table("midpoint_x", motor=ends) == pytest.approx(exact, abs=1e-9)
+        assert table.drivers["motor"][[0, -1]] == pytest.approx(ends, rel=1e-15)
+
+
 def test_mistakes_with_tables_are_named(model):
     of = hardpoint.read(model)
     table = of.table({"spring_drive": (-16, 24)}, of="toe", error=0.1)

@@ -257,8 +257,19 @@ def test_torch_has_the_exact_gradient(strut):
     (toe_of(x) * weights).sum().backward()
     for k in range(2):
         assert x.grad[k].numpy() == pytest.approx(f.jacobian(x[k].detach().numpy()).T @ weights.numpy(), rel=1e-9)
-    with pytest.raises(hardpoint.UsageError, match="float64"):
-        toe_of(x.float())
+    for wrong in (x.float(), x.int(), x.detach().numpy(), [0.0, 0.0]):
+        with pytest.raises(hardpoint.UsageError, match="float64"):
+            toe_of(wrong)
+    with pytest.raises(hardpoint.UsageError, match=r"hardpoint\.Function"):
+        function(toe_of)
+    # Second derivatives are an error, not zero.
+
+    def total(x):
+        return (toe_of(x) * weights).sum()
+
+    with pytest.raises(hardpoint.UsageError, match="second order"):
+        torch.autograd.functional.hessian(total, x[0].detach())
+    assert torch.autograd.functional.jacobian(total, x[0].detach()).numpy() == pytest.approx(x.grad[0].numpy(), rel=1e-12)
 
 
 # The command's jobs
@@ -312,6 +323,33 @@ def test_compare_clearance_envelope_synthesis_and_schema(strut, tmp_path):
     assert answers.facts["status"] == "found" and len(answers.to_pandas("answers")) == 1
     assert hardpoint.schema() == json.loads((MODELS / "hardpoint.schema.json").read_text())
     assert str(ROOT) not in repr(answers) and "Study" in repr(answers)
+
+
+def test_clearances_of_a_changed_model_read_its_shapes(tmp_path):
+    corners = [[x, y, z] for x in (-0.01, 0.01) for y in (-0.01, 0.01) for z in (-0.01, 0.01)]
+    faces = [(1, 5, 7, 3), (5, 6, 8, 7), (6, 2, 4, 8), (2, 1, 3, 4), (3, 7, 8, 4), (1, 2, 6, 5)]
+    text = "".join(f"v {x} {y} {z}\n" for x, y, z in corners) + "".join("f {} {} {} {}\n".format(*face) for face in faces)
+    (tmp_path / "shapes").mkdir()
+    (tmp_path / "shapes/cube.obj").write_text(text)
+    model = hardpoint.Model.new(
+        "cube",
+        folder=tmp_path,
+        units={"length": "mm", "angle": "deg"},
+        bodies={"ball": {}},
+        joints={"slide": {"type": "translational", "bodies": ["ground", "ball"], "at": [0, 0, 0], "axis": "x"}},
+        drivers={"motor": {"joint": "slide", "law": "10*t"}},
+        shapes={
+            "cube": {"body": "ground", "mesh": {"file": "shapes/cube.obj", "scale": 1000}},
+            "ball": {"body": "ball", "sphere": [30, 0, 0], "radius": 5},
+        },
+        clearances={"c": {"between": ["cube", "ball"]}},
+        time={"end": 1, "steps": 4},
+    )
+    changed = model.with_(shapes={"ball": {"radius": 6}})
+    for one, radius in ((model, 5), (changed, 6)):
+        (pair,) = one.clearance(proof=False).facts["pairs"]
+        assert pair["least"]["distance"] == pytest.approx(20 - radius, abs=1e-9)
+        assert one.envelope("ball", tmp_path / "ball.stl").facts
 
 
 def test_everything_has_a_repr_that_says_what_it_is(toe, press):

@@ -767,9 +767,10 @@ const AFTER_IMPORT: &str = "\
 The contents select the format; `--list` shows the formats. Names of bodies and joints are
 kept. A motion that nothing drives in the source gets a driver that fixes it in the design
 configuration; if it is the only freedom, it swings. Shapes are written next to the model, as
-FILE_meshes/BODY.stl. The report lists what was imported, approximated and rejected, with the
+MODEL_meshes/BODY.stl. The report lists what was imported, approximated and rejected, with the
 place in the source (docs/import.md). The model is then checked as by `hardpoint check`, with
-its exit codes; code 3 also if the source has errors, and then no model is written.
+its exit codes; code 3 also if the source has errors, and then no model is written. A model
+that needs corrections by hand (HP0807, HP0808, HP03) is written, and ends with code 3 or 4.
 
 Examples:
   hardpoint import four_bar.asmt -o four_bar.toml

@@ -55,7 +55,7 @@ pub fn solved(
     session.patient(true);
     let course = session.solve_in_windows(&analysis, true, |_| true)?;
     session.patient(false);
-    let mut summary = Summary::new(file, analysis.topology(), &course);
+    let mut summary = Summary::new(file, &analysis, &course);
     summary.timings.read = read;
     summary.timings.solve = started.elapsed().as_secs_f64();
     summary.timings.total = session.seconds();

@@ -115,7 +115,7 @@ fn compare_in(
                 }
             }
             let course = Course::of(&file.model, &today);
-            let mut summary = Summary::new(&file, analysis.topology(), &course);
+            let mut summary = Summary::new(&file, &analysis, &course);
             summary.diagnostics = diagnose::all(&file, &summary, &course, None);
             let changed = ChangedDesign {
                 name: other.file_name().into(),

@@ -108,22 +108,37 @@ impl Folder {
         Ok(())
     }
 
+    /// Copies the contents of all files to a pipe or a device.
+    fn copy_to(mut self, path: &Path) -> Result<(), WriteError> {
+        let copy = |file: &NamedTempFile| {
+            io::copy(&mut file.reopen()?, &mut File::options().write(true).open(path)?)
+        };
+        let mut files = std::mem::take(&mut self.pending).into_iter();
+        files
+            .try_for_each(|(file, _)| copy(&file).map(drop))
+            .map_err(|error| WriteError { path: path.into(), error })
+    }
+
     /// Path of a file.
     pub fn path_of(&self, name: &str) -> PathBuf {
         self.path.join(name)
     }
 }
 
-/// Writes one file, whole or not at all.
+/// Writes one file, whole or not at all. A link stays a link, and its file is written; a pipe or a device receives the
+/// content once it is complete.
 pub fn write_alone(
     to: &Path,
     content: impl FnOnce(&mut PendingFile) -> io::Result<()>,
 ) -> Result<(), WriteError> {
-    let parent = to.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let name = to.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
-    let mut folder = Folder::open(parent)?;
+    let target = to.canonicalize().unwrap_or_else(|_| to.to_owned());
+    let is_stream = target.metadata().is_ok_and(|of| !of.is_file() && !of.is_dir());
+    let parent = target.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let name = target.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+    let elsewhere = std::env::temp_dir();
+    let mut folder = Folder::open(if is_stream { &elsewhere } else { parent })?;
     folder.write(&name, content)?;
-    folder.commit(&[])
+    if is_stream { folder.copy_to(&target) } else { folder.commit(&[]) }
 }
 
 impl PendingFile {
@@ -267,5 +282,22 @@ mod tests {
         again.commit(&["a", "b"]).unwrap_or_else(|e| panic!("{}", e.error));
         assert_eq!(names(folder.path()), ["a", "c"]);
         assert_eq!(std::fs::read(folder.path().join("a")).unwrap(), b"new");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_and_devices_stay() {
+        let folder = tempfile::tempdir().unwrap();
+        let [file, link, device] = ["file", "link", "device"].map(|name| folder.path().join(name));
+        std::fs::write(&file, "old").unwrap();
+        std::os::unix::fs::symlink("file", &link).unwrap();
+        std::os::unix::fs::symlink("/dev/null", &device).unwrap();
+        for to in [&link, &device] {
+            write_alone(to, |out| out.write_all(b"new")).unwrap_or_else(|e| panic!("{}", e.error));
+            assert!(to.is_symlink(), "{}", to.display());
+        }
+        assert_eq!(std::fs::read(file).unwrap(), b"new");
+        assert!(!Path::new("/dev/null").is_file() && device.exists());
+        assert_eq!(names(folder.path()), ["device", "file", "link"]);
     }
 }

@@ -53,9 +53,19 @@ pub fn import_to(session: &Session, options: &Import, source: &Path, to: &Path) 
     let name = source.display().to_string();
     let folder = source.parent().unwrap_or(Path::new("")).to_owned();
     let resolve = |path: &str| beside(&folder, path);
-    let options = Options { format: format.copied(), closings };
-    let imported = hardpoint_import::import_with(&options, &bytes, &name, &resolve);
-    let imported = imported.map_err(|problems| refused(session, &problems))?;
+    let mut options = Options { format: format.copied(), closings, shapes: None };
+    let mut imported_to = |shapes: String| {
+        options.shapes = Some(shapes);
+        let imported = hardpoint_import::import_with(&options, &bytes, &name, &resolve);
+        imported.map_err(|problems| refused(session, &problems))
+    };
+    let shapes = format!("{}_meshes", to.file_stem().unwrap_or_default().to_string_lossy());
+    let mut imported = imported_to(shapes.clone())?;
+    let mut number = 1;
+    while replaces_others(to, &imported) {
+        number += 1;
+        imported = imported_to(format!("{shapes}_{number}"))?;
+    }
     write(to, &imported).map_err(|e| session.not_written(&e))?;
     if !session.is_json() {
         text::print(&format!("{}\n", imported.report));
@@ -63,7 +73,11 @@ pub fn import_to(session: &Session, options: &Import, source: &Path, to: &Path) 
     if let Some(fault) = &imported.fault {
         refused(session, fault);
         session.remark(&format!("`{}` was written anyway; correct it by hand", to.display()));
-        return Err(Outcome::CannotBeDriven);
+        // That of a check of the model
+        return Err(match hardpoint_file::read(to) {
+            Ok(_) => Outcome::CannotBeDriven,
+            Err(_) => Outcome::BadModel,
+        });
     }
     let file = session.read(to)?;
     let summary = check::examine(session, Formulation::Relative, &file)?;
@@ -111,9 +125,23 @@ fn beside(folder: &Path, path: &str) -> Option<Vec<u8>> {
     Some(bytes)
 }
 
+/// Returns true if a file of the model would replace one with other contents that the previous version of the model
+/// does not refer to: a mesh of the source, or of another model.
+fn replaces_others(to: &Path, imported: &ImportedModel) -> bool {
+    let previous = std::fs::read_to_string(to).unwrap_or_default();
+    imported.files.iter().any(|(name, bytes)| {
+        let is_own = previous.contains(&format!("\"{name}\""));
+        !is_own && std::fs::read(folder_of(to).join(name)).is_ok_and(|other| other != *bytes)
+    })
+}
+
+fn folder_of(to: &Path) -> &Path {
+    to.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
 /// Writes the model and the files that it refers to; the model comes last, so that it never exists without them.
 fn write(to: &Path, imported: &ImportedModel) -> Result<(), WriteError> {
-    let parent = to.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let parent = folder_of(to);
     for (name, bytes) in &imported.files {
         let path = parent.join(name);
         let (folder, name) = (path.parent().unwrap_or(parent), file_name(&path));

@@ -71,7 +71,7 @@ pub fn page(
         return None;
     }
     let course = Course::of(&file.model, &today);
-    let mut summary = Summary::new(&file, analysis.topology(), &course);
+    let mut summary = Summary::new(&file, analysis, &course);
     summary.diagnostics = diagnose::all(&file, &summary, &course, None);
     let exact = found.map(|f| analysis.solve(Run::new().at(f.design).without_sensitivities()));
     let changed = found.zip(exact.as_ref()).map(|(found, exact)| ChangedDesign {

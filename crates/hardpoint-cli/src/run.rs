@@ -183,7 +183,7 @@ fn page_of_cases(all: &ModelFile, options: &Run, results: &CaseResults, maps: &[
     let mut file = all.clone();
     file.model = all.model.motions().into_iter().next()?;
     let analysis = Analysis::with(&file.model, options.common.formulation()).ok()?;
-    let mut summary = Summary::new(&file, analysis.topology(), course);
+    let mut summary = Summary::new(&file, &analysis, course);
     summary.diagnostics = diagnose::all(&file, &summary, course, None);
     let finish = |page| CaseMetrics::page(metrics, &all.model, MapFact::page(maps, page));
     Some(report(&Request::of(&file, &analysis, course, &summary), &finish).expect("a payload is plain data"))
@@ -251,7 +251,7 @@ pub fn page(
     let analysis = session.plan(file, formulation)?;
     let (read, started) = (session.seconds(), Instant::now());
     let course = session.solve_in_windows(&analysis, true, |_| true)?;
-    let mut summary = Summary::new(file, analysis.topology(), &course);
+    let mut summary = Summary::new(file, &analysis, &course);
     (summary.timings.read, summary.timings.solve) = (read, started.elapsed().as_secs_f64());
     summary.diagnostics = diagnose::all(file, &summary, &course, None);
     if course.kept.motion.is_empty() {
@@ -295,7 +295,7 @@ fn run_in(
         session.solve_in_windows(&analysis, !options.no_sensitivities, |window| tables.add(window))?;
     let solve = started.elapsed().as_secs_f64();
     let solution = &course.kept;
-    let mut summary = Summary::new(file, analysis.topology(), &course);
+    let mut summary = Summary::new(file, &analysis, &course);
     (summary.timings.read, summary.timings.solve) = (read, solve);
     let outputs = format!("the files in `{}`", path.display());
     summary.diagnostics = diagnose::all(file, &summary, &course, Some(&outputs));

@@ -708,7 +708,9 @@ impl Session {
 /// Text of a model file for the folder of `to`.
 fn text_for(file: &ModelFile, text: &str, to: &Path) -> Result<String, Diagnostics> {
     let folder = |path: &Path| path.parent().map(Path::to_owned).unwrap_or_default();
-    file.text_for(text, Some(&folder(Path::new(file.file_name()))), &folder(to))
+    let from = folder(Path::new(file.file_name()));
+    file.spares_its_files(&from, to)?;
+    file.text_for(text, Some(&from), &folder(to))
 }
 
 /// JSON document of a command without a result.

@@ -150,6 +150,8 @@ pub fn notes(summary: &Summary) -> String {
 
 /// Minimum width of a text column in characters, unless all its words are shorter.
 const NARROW: usize = 14;
+/// Maximum number of characters of a cell.
+const LONGEST_CELL: usize = 1000;
 
 /// Formats a table under its title, as wide as the terminal; without a terminal, as wide as its contents.
 pub fn table(table: &Table) -> String {
@@ -174,7 +176,7 @@ fn empty_grid() -> comfy_table::Table {
 fn laid_out(mut grid: comfy_table::Table, table: &Table) -> String {
     grid.set_header(table.header.iter().map(|cell| Cell::new(shown(cell))));
     for row in &table.rows {
-        grid.add_row(row.iter().map(|cell| shown(cell)));
+        grid.add_row(row.iter().map(|cell| shown(&shortened(cell)).into_owned()));
     }
     // Numbers are never broken, and only long words are.
     for (k, column) in grid.column_iter_mut().enumerate() {
@@ -191,6 +193,14 @@ fn laid_out(mut grid: comfy_table::Table, table: &Table) -> String {
     }
     let lines: String = grid.lines().map(|line| format!(" {}\n", line.trim_end())).collect();
     format!("{}\n{lines}", bold(&table.title))
+}
+
+/// Text of a cell that is not longer than a few lines: to lay out long words takes the square of their length.
+fn shortened(cell: &str) -> Cow<'_, str> {
+    match cell.char_indices().nth(LONGEST_CELL) {
+        Some((end, _)) => format!("{} ...", &cell[..end]).into(),
+        None => cell.into(),
+    }
 }
 
 /// True if a cell is a number with its unit, or a dash in its place.
@@ -213,6 +223,13 @@ mod tests {
         assert!(!safe.chars().any(is_odd), "{safe:?}");
         assert_eq!(shown("a\x1b[31m\n"), "a\\u{1b}[31m\\u{a}");
         assert_eq!(shown("straße, 腕"), "straße, 腕");
+    }
+
+    #[test]
+    fn a_long_cell_is_shortened() {
+        assert_eq!(shortened("a + b"), "a + b");
+        let long = shortened(&"é".repeat(LONGEST_CELL + 1)).into_owned();
+        assert!(long.ends_with("é ...") && long.chars().count() == LONGEST_CELL + 4);
     }
 
     #[test]

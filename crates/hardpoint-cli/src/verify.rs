@@ -41,8 +41,7 @@ fn verify_in(
         return Err(if session.interrupted() { Outcome::Interrupted } else { Outcome::Stopped });
     }
     session.tell(&file, &file.remarks);
-    session
-        .tell(&file, &diagnose::variables(&file, &Facts::new(&file, analysis.topology(), Some(&solution))));
+    session.tell(&file, &diagnose::variables(&file, &Facts::new(&file, &analysis, Some(&solution))));
 
     let started = Instant::now();
     let mut sweep = verify::Options::new(options.differences.scheme());

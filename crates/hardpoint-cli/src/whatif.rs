@@ -102,7 +102,7 @@ pub fn whatif_in(
     let mut outcome = today.stop.as_ref().map(of_today).map_or(Outcome::Done, early);
     let gathered = folder.as_ref().map(|_| {
         let course = Course::of(&file.model, &today);
-        let mut summary = Summary::new(&file, analysis.topology(), &course);
+        let mut summary = Summary::new(&file, &analysis, &course);
         summary.validity = trusted(session, &file, &analysis, &today);
         (course, summary)
     });

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::io;
 
+use hardpoint::joint::Quantity;
 use hardpoint_file::{LengthUnit, ModelFile};
 use hardpoint_table::csv::CsvWriter;
 
@@ -28,14 +29,9 @@ pub const TEIMORBIT: Format = Format {
 /// Names and positions of the hardpoints, in the unit of the file, with the fewest digits that reproduce the positions.
 pub fn hardpoints(file: &ModelFile) -> impl Iterator<Item = (&str, [f64; 3])> {
     let own = file.model.hardpoints.iter().filter(|h| !h.unnamed);
-    own.map(|h| (h.name.as_str(), h.position.to_array().map(|x| shortest(file.units.length, x))))
-}
-
-/// Length in the unit of the file, with the fewest digits that reproduce it.
-fn shortest(unit: LengthUnit, metres: f64) -> f64 {
-    let value = metres * unit.per_metre();
-    let rounded = |digits: usize| format!("{value:.digits$e}").parse::<f64>().unwrap_or(value);
-    (0..17).map(rounded).find(|x| unit.metres(*x) == metres).unwrap_or(value)
+    own.map(|h| {
+        (h.name.as_str(), h.position.to_array().map(|x| file.units.shortest_from_si(Quantity::Length, x)))
+    })
 }
 
 fn csv(file: &ModelFile, out: &mut ExportedModel) {

@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use hardpoint::space::{Mat3, Pose, Vec3};
 
 use crate::adams_keys;
-use crate::adams_statement::{SEAM, Statement, number, statements};
+use crate::adams_statement::{SEAM, Statement, dataset, number};
 use crate::law::{self, Language};
 use crate::markers::{
     Marker, MarkerJoint, carrying_joint, coordinate_sign, join, offset, relative_to_nominal,
@@ -38,7 +38,9 @@ pub const FORMAT: Format = Format {
 };
 
 fn read(source: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
-    let statements = statements(source.text);
+    let data = dataset(source.text);
+    let statements = data.statements;
+    report_repeated(&statements, notes);
     let (scale, length, time) = units(&statements, notes);
     let title = source.text.lines().next().unwrap_or_default();
     let title = title.split_once("model name:").map_or(source.stem, |(_, name)| name.trim());
@@ -63,12 +65,47 @@ fn read(source: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     reader.motions(&statements);
     let loads = reader.loads(&statements);
     reader.rest(&statements, &loads);
-    if !source.text.lines().rev().any(|l| l.trim().eq_ignore_ascii_case("END")) {
+    for (at, line) in &data.unread {
+        let why = format!("`{line}` is not a statement, which begins with its name and a slash");
+        reader.notes.not_understood("line", "", Some(*at), why);
+    }
+    if !data.has_end {
         let at = SourceSpan { text: 0, start: source.text.len(), end: source.text.len() };
         reader.notes.approximated("END", "", Some(at), "the statement is missing: the file may be truncated");
     }
+    if data.after_end.is_some() {
+        let why = "the dataset ends before this line: it is not read, nor are the lines after it";
+        reader.notes.refused("END", "", data.after_end, why);
+    }
     let m = reader.m;
     (m.bodies.len() > 1).then_some(m)
+}
+
+/// Reports statements of a kind with the same identifier, and statements without one. Each would replace the one before
+/// it.
+fn report_repeated(statements: &[Statement], notes: &mut ImportLog) {
+    /// Statements without an identifier, of which a dataset has one.
+    const SINGLE: [&str; 2] = ["UNITS", "ACCGRAV"];
+    let mut known = BTreeSet::new();
+    for s in statements.iter().filter(|s| adams_keys::is_statement(&s.name)) {
+        let is_single = SINGLE.contains(&s.name.as_str());
+        if s.id.is_empty() && !is_single {
+            if adams_keys::of(&s.name).is_some() {
+                let message = format!("the statement {} has no identifier", s.name);
+                notes.problem_with(
+                    "HP0803",
+                    Some(s.at),
+                    message,
+                    "write it behind the slash, as in `PART/2`",
+                );
+            }
+            continue;
+        }
+        let id = if is_single { s.name.clone() } else { format!("{}/{}", s.name, s.id) };
+        if !known.insert(id.clone()) {
+            notes.problem("HP0803", Some(s.at), format!("{id} is defined twice"));
+        }
+    }
 }
 
 /// Returns the factor of lengths, the length unit of the model, and the time of functions in seconds.
@@ -180,7 +217,12 @@ impl Reader<'_> {
     /// Reads a frame from its origin and its orientation: Euler angles, or points on its z and x axes.
     fn frame(&mut self, s: &Statement, origin: &str, along_z: &str, along_x: &str) -> Pose {
         let r = s.vector(origin, self.notes).unwrap_or_else(|| [0.0; 3].into());
-        let angles = s.vector("REULER", self.notes).or_else(|| s.vector("EULER", self.notes));
+        let by_angles = ["REULER", "EULER"].into_iter().find(|key| s.has(key));
+        if let Some(key) = by_angles {
+            let why = format!("the orientation of {}/{} is that of `{key}`", s.name, s.id);
+            self.report_unread(s, &["EULER", along_z, along_x, "USEXP"], key, &why);
+        }
+        let angles = by_angles.and_then(|key| s.vector(key, self.notes));
         let rot = match angles {
             Some(a) => sequence("zxz", a.to_array()),
             None => {
@@ -189,6 +231,13 @@ impl Reader<'_> {
             }
         };
         Pose { rot, r: r * self.scale }
+    }
+
+    /// Reports keys of a statement that are not read, since another one has the same meaning.
+    fn report_unread(&mut self, s: &Statement, keys: &[&str], read: &str, why: &str) {
+        for key in keys.iter().filter(|key| **key != read && s.has(key)) {
+            self.notes.not_understood(key, &s.label, Some(s.at), why);
+        }
     }
 
     /// Returns the orientation from a point on the z axis and a point in the xz plane. With `USEXP`, the x axis is
@@ -258,9 +307,7 @@ impl Reader<'_> {
                 }
                 _ => self.notes.taken(kind, &s.label, Some(s.at)),
             }
-            if self.parts.insert(id.clone(), body).is_some() {
-                self.notes.problem("HP0803", Some(s.at), format!("{id} is defined twice"));
-            }
+            self.parts.insert(id, body);
         }
     }
 
@@ -377,16 +424,13 @@ impl Reader<'_> {
         };
         let Some(mut markers) = self.pair(s) else { return };
         if *name == "HOOKE" {
-            // The pins of the cross are x of I and y of J. If these are not perpendicular, another perpendicular pair
-            // is used.
+            // The pins of the cross are x of I and y of J.
             let [j, i] = markers;
-            let pins = [(j.y(), i.x()), (j.x(), i.y()), (j.x(), i.x()), (j.y(), i.y())];
-            let square = pins.iter().find(|(a, b)| a.dot(*b).abs() < 1e-6).unwrap_or(&pins[0]);
             let turned =
                 |m: &Marker, z: Vec3| Pose { rot: from_z_and_x(z, m.z()).unwrap_or(m.pose.rot), r: m.pose.r };
             markers = [
-                Marker { body: j.body, pose: turned(&j, square.0) },
-                Marker { body: i.body, pose: turned(&i, square.1) },
+                Marker { body: j.body, pose: turned(&j, j.y()) },
+                Marker { body: i.body, pose: turned(&i, i.x()) },
             ];
         }
         let Some(number) = join(&mut self.m, self.notes, s.source(), kind, markers) else { return };
@@ -506,6 +550,8 @@ impl Reader<'_> {
         let Some(function) = s.text("FUNCTION") else { return refuse(self, "it has no FUNCTION") };
         let function = self.expand_variables(function);
         if let Some(id) = s.reference("JOINT") {
+            let why = format!("MOTION/{} drives a coordinate of JOINT/{id}", s.id);
+            self.report_unread(s, &["I", "J", "X", "Y", "Z", "B1", "B2", "B3"], "JOINT", &why);
             let Some(joint) = self.joints.get(id) else {
                 if self.refused.contains(id) {
                     return refuse(self, &format!("JOINT/{id} is not supported"));
@@ -542,12 +588,7 @@ impl Reader<'_> {
             match law {
                 Ok(law) => {
                     self.m.driver(&s.label, s.source().note(self.notes), Drives::Coordinate(coordinate), law);
-                    let why = "its rate is integrated over the first second and interpolated by a spline";
-                    if order > 0 && matches!(self.m.drivers.last().map(|d| &d.law), Some(Law::Table(_))) {
-                        self.notes.approximated("MOTION", &s.label, Some(s.at), why);
-                    } else {
-                        self.notes.taken("MOTION", &s.label, Some(s.at));
-                    }
+                    self.report_motion(s, order);
                 }
                 Err(why) => refuse(self, &why),
             }
@@ -565,7 +606,7 @@ impl Reader<'_> {
                             Drives::Translation { body: i.body, at: i.pose.r, along },
                             law,
                         );
-                        self.notes.taken("MOTION", &s.label, Some(s.at));
+                        self.report_motion(s, order);
                     }
                     Err(why) => refuse(self, &why),
                 }
@@ -575,6 +616,23 @@ impl Reader<'_> {
                 "only displacements of a marker relative to ground, prescribed by position, are supported between markers",
             ),
         }
+    }
+
+    /// Reports the motion of the last driver, whose function prescribes the derivative of this order.
+    fn report_motion(&mut self, s: &Statement, order: usize) {
+        let is_table = matches!(self.m.drivers.last().map(|d| &d.law), Some(Law::Table(_)));
+        let why = match (is_table, order) {
+            (false, _) => {
+                self.notes.taken("MOTION", &s.label, Some(s.at));
+                return;
+            }
+            (true, 0) => {
+                "the spline of the model passes through the same points, but is another one between them: \
+                 its curvature is continuous, and zero at both ends"
+            }
+            (true, _) => "its rate is integrated over the first second and interpolated by a spline",
+        };
+        self.notes.approximated("MOTION", &s.label, Some(s.at), why);
     }
 
     /// Expands references to variables (`VARVAL(3)`) in a function. Recursive references remain.
@@ -692,8 +750,16 @@ impl Reader<'_> {
         let kinds: String = s.text("TYPE").unwrap_or_default().to_ascii_uppercase();
         let kinds: Vec<&str> =
             kinds.split([':', ',', SEAM]).map(str::trim).filter(|k| !k.is_empty()).collect();
+        for (count, what) in [(scales.len(), "scales"), (kinds.len(), "types")] {
+            // Without types, those of the joints apply.
+            if count != names.len() && (count > 0 || what == "scales") {
+                let message = format!("COUPLER/{} has {} joints and {count} {what}", s.id, names.len());
+                self.notes.problem("HP0804", Some(s.at), message);
+                return;
+            }
+        }
         let mut terms = Vec::new();
-        for (k, id) in names.iter().enumerate() {
+        for ((k, id), scale) in names.iter().enumerate().zip(scales) {
             let Some(joint) = self.joints.get(*id) else {
                 if self.refused.contains(*id) {
                     let why = format!("JOINT/{id} is not supported");
@@ -712,16 +778,8 @@ impl Reader<'_> {
                 None => joint.kind == "revolute",
             };
             let name = if turns { "angle" } else { "displacement" };
-            let Some(scale) = scales.get(k) else {
-                self.notes.problem(
-                    "HP0804",
-                    Some(s.at),
-                    format!("COUPLER/{} has {} joints and {} scales", s.id, names.len(), scales.len()),
-                );
-                return;
-            };
             // Scales refer to lengths of the source; angles are in rad on both sides.
-            let factor = if turns { *scale } else { scale / self.scale };
+            let factor = if turns { scale } else { scale / self.scale };
             terms.push((Coordinate { joint: joint.number, name }, factor));
         }
         self.m.coupler(&s.label, s.source().note(self.notes), terms);
@@ -734,7 +792,7 @@ impl Reader<'_> {
             s.text("JOINTS").unwrap_or_default().split([',', ':', SEAM]).map(str::trim).collect();
         let cv = s.reference("CV").and_then(|id| self.markers.get(id)).copied();
         let joints: Vec<&MarkerJoint> = names.iter().filter_map(|id| self.joints.get(*id)).collect();
-        let (Some(cv), [a, b]) = (cv, &joints[..]) else {
+        let (Some(cv), [a, b], 2) = (cv, &joints[..], names.len()) else {
             if names.iter().any(|id| self.refused.contains(*id)) {
                 self.notes.refused("GEAR", &s.label, Some(s.at), "one of its joints is not supported");
                 return;
@@ -778,9 +836,26 @@ impl Reader<'_> {
         let Some(known) = adams_keys::of(&s.name).filter(|_| s.name != "FLEX_BODY") else {
             return false;
         };
+        for flags in adams_keys::exclusive_flags(&s.name) {
+            let own: Vec<&str> = flags.iter().copied().filter(|flag| s.has(flag)).collect();
+            if own.len() > 1 {
+                let list = own.join(", ");
+                let message = format!("{}/{} has flags that exclude each other: {list}", s.name, s.id);
+                self.notes.problem_with("HP0805", Some(s.at), message, "remove all but one of them");
+            }
+        }
         let mut found = false;
+        let mut read = BTreeSet::new();
         for (key, value) in &s.keys {
             let key = key.trim_matches(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+            // Splines of two variables are refused as such.
+            let may_repeat = s.name == "SPLINE" && key == "Y";
+            if known.is_value(key) && !value.is_empty() && !read.insert(key) && !may_repeat {
+                let why = format!("{}/{} has a second `{key}`, which is not read", s.name, s.id);
+                self.notes.not_understood(key, &s.label, Some(s.at), why);
+                found = true;
+                continue;
+            }
             let zero = value.split([',', SEAM]).all(|w| number(w.trim()) == Some(0.0));
             if ["ICTRAN", "ICROT", "IC"].contains(&key) {
                 if !zero {
@@ -818,7 +893,13 @@ impl Reader<'_> {
             "GEAR",
             "UNITS",
         ];
-        const HOLD: [&str; 8] = ["PTCV", "CVCV", "PTSF", "CURVE", "UCON", "GCON", "SURFACE", "NFORCE"];
+        const CONSTRAINTS: [(&str, &str); 5] = [
+            ("PTCV", "a point on a curve"),
+            ("CVCV", "contact of curves"),
+            ("PTSF", "a point on a surface"),
+            ("GCON", "a constraint by an expression"),
+            ("UCON", "a constraint by a subroutine"),
+        ];
         // A motion that drivers prescribe does not depend on them; equilibria and loads do.
         const FORCES: [&str; 12] = [
             "VFORCE", "GFORCE", "VTORQUE", "MFORCE", "NFORCE", "BEAM", "FIELD", "CBUSHING", "CONTACT",
@@ -888,13 +969,12 @@ impl Reader<'_> {
                 let why = "the force has no equivalent: motions in which drivers prescribe all positions are the same without it, \
                            but not loads and equilibria";
                 self.notes.refused(&s.name, &s.label, Some(s.at), why);
-            } else if HOLD[..6].contains(&s.name.as_str()) && s.name != "CURVE" {
-                self.notes.refused(
-                    &s.name,
-                    &s.label,
-                    Some(s.at),
-                    "the constraint has no equivalent: a driver fixes the motion instead",
+            } else if let Some((_, what)) = CONSTRAINTS.iter().find(|(name, _)| *name == s.name) {
+                let why = format!(
+                    "{what} has no equivalent and is not imported: motions that nothing else drives or constrains \
+                     get drivers, which are listed as `motion`"
                 );
+                self.notes.refused(&s.name, &s.label, Some(s.at), why);
             } else if IRRELEVANT.contains(&s.name.as_str()) {
                 // Unknown keys and unsupported splines have been reported.
                 let is_refused = s.name == "SPLINE" && !self.splines.contains_key(&s.id);

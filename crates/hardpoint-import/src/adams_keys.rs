@@ -243,6 +243,24 @@ pub fn statement_name(written: &str) -> String {
     full.unwrap_or(written).to_owned()
 }
 
+/// Returns true for the full name of a statement of Adams/Solver.
+pub fn is_statement(name: &str) -> bool {
+    STATEMENTS.contains(&name)
+}
+
+/// Flags of a statement that exclude each other: types, and components of motions.
+pub fn exclusive_flags(statement: &str) -> Vec<&'static [&'static str]> {
+    const WAYS: &[&str] = &["TRANSLATIONAL", "ROTATIONAL"];
+    match statement {
+        "JOINT" | "JPRIM" => of(statement).map(|keys| keys.flags).into_iter().collect(),
+        "MOTION" => {
+            vec![WAYS, &["DISPLACEMENT", "VELOCITY", "ACCELERATION"], &["X", "Y", "Z", "B1", "B2", "B3"]]
+        }
+        "SPRINGDAMPER" | "SFORCE" => vec![WAYS],
+        _ => Vec::new(),
+    }
+}
+
 /// Returns the keys of a statement, if it is read.
 pub fn of(statement: &str) -> Option<&'static Keys> {
     KEYS.iter().find(|(name, _)| *name == statement).map(|(_, keys)| keys)
@@ -264,6 +282,11 @@ impl Keys {
     /// Returns the keys that an abbreviation may mean.
     pub fn meant(&self, written: &str, is_flag: bool) -> Vec<&'static str> {
         self.candidates(is_flag).filter(|key| key.starts_with(written)).collect()
+    }
+
+    /// Returns true for a key with a value that is read.
+    pub fn is_value(&self, key: &str) -> bool {
+        self.values.contains(&key)
     }
 
     fn candidates(&self, is_flag: bool) -> impl Iterator<Item = &'static str> {

@@ -89,12 +89,26 @@ pub fn number(word: &str) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
-/// Returns the statements of a dataset, without comments and with continuation lines joined.
-pub fn statements(text: &str) -> Vec<Statement> {
+/// Dataset, without comments.
+#[derive(Debug, Default)]
+pub struct Dataset {
+    /// Statements up to `END`.
+    pub statements: Vec<Statement>,
+    /// Lines up to `END` that are not statements, with their positions.
+    pub unread: Vec<(SourceSpan, String)>,
+    /// True if the dataset has the statement `END`.
+    pub has_end: bool,
+    /// First line after `END` that is not a comment.
+    pub after_end: Option<SourceSpan>,
+}
+
+/// Reads a dataset; continuation lines are joined.
+pub fn dataset(text: &str) -> Dataset {
+    let mut out = Dataset::default();
     let mut lines: Vec<(SourceSpan, String, String)> = Vec::new();
     let mut label = String::new();
-    let mut start = 0;
-    for (k, whole) in text.split_inclusive('\n').enumerate() {
+    let (mut start, mut is_first) = (0, true);
+    for whole in text.split_inclusive('\n') {
         let line = whole.trim_end_matches(['\n', '\r']);
         let from = start + line.len() - line.trim_start().len();
         let at = SourceSpan { text: 0, start: from, end: start + line.trim_end().len() };
@@ -104,9 +118,18 @@ pub fn statements(text: &str) -> Vec<Statement> {
             label = name.trim().trim_matches(['\'', '"']).to_owned();
         }
         let code = code.trim();
-        // The first line is a title.
-        let is_title = k == 0 && code.to_ascii_uppercase().starts_with("ADAMS");
+        // The first line is a title, unless the title is missing.
+        let is_title = is_first && (code.to_ascii_uppercase().starts_with("ADAMS") || head(code).is_none());
+        is_first &= line.trim().is_empty();
         if code.is_empty() || is_title {
+            continue;
+        }
+        if out.has_end {
+            out.after_end.get_or_insert(at);
+            continue;
+        }
+        if code.trim_end_matches([';', ' ']).eq_ignore_ascii_case("END") {
+            out.has_end = true;
             continue;
         }
         // A statement continues if the next line begins with a comma or `&`, or if its line ends with one.
@@ -122,17 +145,24 @@ pub fn statements(text: &str) -> Vec<Statement> {
             _ => lines.push((at, code.to_owned(), std::mem::take(&mut label))),
         }
     }
-    lines.iter().filter_map(|(at, code, label)| statement(*at, code, label)).collect()
+    for (at, code, label) in lines {
+        match statement(at, &code, &label) {
+            Some(statement) => out.statements.push(statement),
+            None => out.unread.push((at, code)),
+        }
+    }
+    out
+}
+
+/// Splits a statement into its name and the text after the slash; `None` for other lines.
+fn head(code: &str) -> Option<(&str, &str)> {
+    let end = code.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(code.len());
+    let (name, rest) = code.split_at(end);
+    rest.trim_start().strip_prefix('/').filter(|_| !name.is_empty()).map(|rest| (name, rest))
 }
 
 fn statement(at: SourceSpan, code: &str, label: &str) -> Option<Statement> {
-    let code = code.trim_end_matches([';', ' ']);
-    let end = code.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(code.len());
-    let (name, rest) = code.split_at(end);
-    let Some(rest) = rest.trim_start().strip_prefix('/') else {
-        // A title, `END`.
-        return None;
-    };
+    let (name, rest) = head(code.trim_end_matches([';', ' ']))?;
     let name = name.to_ascii_uppercase();
     let name = adams_keys::statement_name(&name);
     let known = adams_keys::of(&name);

@@ -181,6 +181,8 @@ pub struct Options {
     pub format: Option<Format>,
     /// Joints that close loops of the source.
     pub closings: Vec<Closing>,
+    /// Folder of the shapes next to the model; `None` to name it after the source.
+    pub shapes: Option<String>,
 }
 
 /// Imports a source with options.
@@ -194,7 +196,7 @@ pub fn import_with(
     resolve: Resolve<'_>,
 ) -> Result<ImportedModel, ImportErrors> {
     match options.format.as_ref().or_else(|| Format::of(bytes, name)) {
-        Some(format) => read_as(format, &options.closings, bytes, name, resolve),
+        Some(format) => read_as(format, options, bytes, name, resolve),
         None => {
             let notes = ImportLog::new(name, "");
             if let Some(sibling) = siblings::of(&decoded(&bytes[..bytes.len().min(LOOKED_AT)]), name) {
@@ -234,12 +236,12 @@ pub fn import_as(
     name: &str,
     resolve: Resolve<'_>,
 ) -> Result<ImportedModel, ImportErrors> {
-    read_as(format, &[], bytes, name, resolve)
+    read_as(format, &Options::default(), bytes, name, resolve)
 }
 
 fn read_as(
     format: &Format,
-    closings: &[Closing],
+    options: &Options,
     bytes: &[u8],
     name: &str,
     resolve: Resolve<'_>,
@@ -272,7 +274,7 @@ fn read_as(
         if is_robot {
             closing::close_cut_by_exporters(m, &mut notes);
         }
-        closing::close(m, &mut notes, closings);
+        closing::close(m, &mut notes, &options.closings);
         closing::report_likely_pairs(m, &mut notes);
     }
     // If a file cannot be read, its kind is more informative than its errors as this format.
@@ -343,7 +345,8 @@ fn read_as(
         };
         Some(message.help(help))
     };
-    let files = input.shapes.files(&mut m, &format!("{}_meshes", shapes::file_name(stem)));
+    let folder = options.shapes.clone().unwrap_or_else(|| format!("{stem}_meshes"));
+    let files = input.shapes.files(&mut m, &shapes::file_name(&folder));
     let fault = fault.map(|diagnostic| notes.single_error(diagnostic));
     Ok(ImportedModel {
         text: write::text(&m, &about),

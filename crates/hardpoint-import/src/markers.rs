@@ -124,7 +124,8 @@ pub fn join(
         }
         "universal" | "dot1" => {
             let (a, b) = (i.z(), j.z());
-            let square = (b - a * a.dot(b)).unit();
+            // Axes that are parallel but for round-off leave the direction of the cross open.
+            let square = (b - a * a.dot(b)).unit().filter(|_| !parallel(a, b));
             let Some(square) = square else {
                 notes.refused(
                     source.kind,

@@ -335,6 +335,19 @@ impl<'d, 'n> Reader<'d, 'n> {
         out
     }
 
+    /// Reports elements beyond the first of a kind of which an object has one, as MuJoCo does.
+    fn report_repeated(&mut self, (_, owner): Element<'d>, contents: &[Element<'d>], kinds: &[&str]) {
+        let mut found = BTreeSet::new();
+        for (text, node) in contents.iter().filter(|(_, n)| kinds.contains(&n.tag_name().name())) {
+            let kind = node.tag_name().name();
+            if !found.insert(kind) {
+                let message = format!("`{}` has more than one `{kind}`", owner.tag_name().name());
+                let at = xml::at(*text, *node);
+                self.notes.problem_with("HP0803", at, message, "remove all but one of them");
+            }
+        }
+    }
+
     /// Reads the content of a body or of a frame in it; `inside` is its position in the body tree.
     fn body(&mut self, element: Element<'d>, inside: &TreePosition, name: &str) {
         if inside.depth > DEEPEST {
@@ -347,7 +360,9 @@ impl<'d, 'n> Reader<'d, 'n> {
             return;
         }
         let class = inside.class.clone();
-        for (text, node) in self.contents(element, 0) {
+        let contents = self.contents(element, 0);
+        self.report_repeated(element, &contents, &["inertial"]);
+        for (text, node) in contents {
             let at = xml::at(text, node);
             self.classes_of((text, node));
             match node.tag_name().name() {

@@ -346,8 +346,17 @@ impl<'d> Reader<'d, '_> {
         model.canonical = of.or_else(|| model.inner.iter().find_map(|k| self.models[*k].canonical));
         model.canonical = model.canonical.filter(|_| depth > 0);
         self.declare_carriers(&model);
+        let owner = model.node.attribute("name").unwrap_or_default();
+        xml::repeated(model.text, model.node, owner, &["pose", "static", "gravity"], self.notes);
         for node in children(model.node) {
             let (name, at) = (local(node), xml::at(model.text, node));
+            let single: &[&str] = match name {
+                "frame" => &["pose"],
+                "include" => &["uri", "name", "pose", "static", "placement_frame"],
+                _ => &[],
+            };
+            let owner = node.attribute("name").unwrap_or_default();
+            xml::repeated(model.text, node, owner, single, self.notes);
             match name {
                 "pose" | "static" | "world" | "ball_constraint" | "linear_bushing_rpy" | "loop_joint"
                 | "mujoco" | "gravity" => {}
@@ -696,6 +705,7 @@ impl<'d> Reader<'d, '_> {
         }
         for visual in named(link, "visual") {
             let written = child(visual, "pose");
+            xml::repeated(model.text, visual, name, &["pose", "geometry"], self.notes);
             let base = written.and_then(relative_to).and_then(|frame| self.frame(model, frame));
             let base = base.map_or_else(home, |frame| pose.inverse().compose(frame.pose));
             let place = base.compose(written.map_or_else(home, |p| self.written_pose(model.text, p)));
@@ -728,7 +738,7 @@ fn relative_to<'a>(pose: Node<'a, '_>) -> Option<&'a str> {
 fn add_shape(input: &mut Input<'_>, notes: &mut ImportLog, shape: VisibleShape<'_>) {
     let VisibleShape { text, visual, body, link, place } = shape;
     let at = xml::at(text, visual);
-    let Some(shape) = child(visual, "geometry").and_then(|g| children(g).next()) else {
+    let Some(shape) = xml::shape(text, visual, &link, notes) else {
         notes.refused("visual", &link, at, "it has no shape");
         return;
     };

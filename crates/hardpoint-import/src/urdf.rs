@@ -505,6 +505,11 @@ fn moved(frame: Pose, kind: &str, axis: Vec3, by: f64) -> Pose {
 
 fn pose(origin: Node<'_, '_>, notes: &mut ImportLog) -> Pose {
     let [r, angles] = ["xyz", "rpy"].map(|key| attribute::<3>(0, origin, key, notes).unwrap_or_default());
+    if origin.has_attribute("rpy") && origin.has_attribute("quat_xyzw") {
+        let at = attribute_at(0, origin, "quat_xyzw");
+        let message = format!("`{}` has two orientations", origin.tag_name().name());
+        notes.problem_with("HP0804", at, message, "remove `rpy` or `quat_xyzw`");
+    }
     let rot = match attribute::<4>(0, origin, "quat_xyzw", notes) {
         Some([x, y, z, w]) => crate::turn::quaternion([w, x, y, z]).unwrap_or_else(|| {
             let at = attribute_at(0, origin, "quat_xyzw");
@@ -522,7 +527,8 @@ fn shapes(input: &mut Input<'_>, notes: &mut ImportLog, link: Node<'_, '_>, body
     for part in named(link, "visual") {
         let at: Option<SourceSpan> = xml::at(0, part);
         let place = child(part, "origin").map_or_else(home, |o| pose(o, notes));
-        let Some(shape) = child(part, "geometry").and_then(|g| children(g).next()) else {
+        xml::repeated(0, part, name, &["origin", "geometry"], notes);
+        let Some(shape) = xml::shape(0, part, name, notes) else {
             notes.refused("visual", name, at, "it has no shape");
             continue;
         };

@@ -254,6 +254,7 @@ pub struct Vocabulary {
 /// contains it.
 pub fn unknown(text: usize, node: Node<'_, '_>, owner: &str, words: Vocabulary, notes: &mut ImportLog) {
     unknown_attributes(text, node, owner, words.attributes, notes);
+    repeated(text, node, owner, words.read, notes);
     let kind = node.tag_name().name();
     for part in children(node) {
         let name = local(part);
@@ -264,6 +265,39 @@ pub fn unknown(text: usize, node: Node<'_, '_>, owner: &str, words: Vocabulary, 
             notes.not_understood(name, owner, at(text, part), why);
         }
     }
+}
+
+/// Elements of which an object may have more than one.
+const SEVERAL: [&str; 10] =
+    ["visual", "collision", "link1", "site", "geom", "pulley", "joint", "include", "plugin", "flag"];
+
+/// Reports elements of an object beyond the first of a kind, if it may have only one. They are not read.
+pub fn repeated(text: usize, node: Node<'_, '_>, owner: &str, kinds: &[&str], notes: &mut ImportLog) {
+    let mut found = BTreeSet::new();
+    for part in children(node).filter(|part| kinds.contains(&local(*part))) {
+        let kind = local(part);
+        if !found.insert(kind) && !SEVERAL.contains(&kind) {
+            let why =
+                format!("`{}` has more than one `{kind}`: only the first is read", node.tag_name().name());
+            notes.refused(kind, owner, at(text, part), why);
+        }
+    }
+}
+
+/// Returns the shape in the `geometry` of an element; further ones are reported.
+pub fn shape<'a, 'i>(
+    text: usize,
+    node: Node<'a, 'i>,
+    owner: &str,
+    notes: &mut ImportLog,
+) -> Option<Node<'a, 'i>> {
+    let mut shapes = children(child(node, "geometry")?);
+    let first = shapes.next();
+    for other in shapes {
+        let why = "`geometry` has more than one shape: only the first is read";
+        notes.refused(other.tag_name().name(), owner, at(text, other), why);
+    }
+    first
 }
 
 /// Reports the unknown attributes of an element, which may affect the motion.

@@ -1,5 +1,6 @@
 //! Tables over drivers with a proved error: sentences, and the files of `hardpoint map`.
 
+use std::collections::HashSet;
 use std::io::{self, Write};
 
 use hardpoint::model::{Dimension, Model};
@@ -89,7 +90,8 @@ record! {
     drivers: Vec<MapAxisFact> = table.knots.iter().enumerate().map(|(n, knots)| MapAxisFact {
         name: driver_name(n),
         unit: unit(units, quantity(n)),
-        knots: knots.iter().map(|x| units.from_si(quantity(n), *x)).collect(),
+        // The ends are the numbers of the request: a table must have values there.
+        knots: knots.iter().map(|x| units.shortest_from_si(quantity(n), *x)).collect(),
     }).collect();
     /// Outputs.
     outputs: Vec<MapColumnFact> = request.outputs.iter().zip(&table.columns).enumerate().map(|(c, (asked, column))| {
@@ -174,7 +176,9 @@ impl MapTableFact {
     }
 
     /// Writes tables for `CombiTable1Ds` or `CombiTable2Ds` of the Modelica Standard Library, in these units: one table
-    /// `map` with a column for each output over one driver, or a table for each output over two.
+    /// `map` with a column for each output over one driver, or a table for each output over two. The name of a table is
+    /// that of its output with `_` for characters other than ASCII letters and digits; `_2`, `_3` and so on follow
+    /// names that would be equal.
     ///
     /// # Errors
     /// Fails if it cannot be written.
@@ -190,10 +194,15 @@ impl MapTableFact {
         for axis in &self.drivers {
             writeln!(out, "# {} in {}", axis.name, axis.unit)?;
         }
-        for output in &self.outputs {
+        let names = self.table_names();
+        for (output, table) in self.outputs.iter().zip(&names) {
+            let renamed = match self.drivers.len() > 1 && *table != output.name {
+                true => format!(", table {table}"),
+                false => String::new(),
+            };
             writeln!(
                 out,
-                "# {} in {}, error at most {:e} (proved)",
+                "# {} in {}, error at most {:e} (proved){renamed}",
                 output.name, output.unit, output.proved_error
             )?;
         }
@@ -212,9 +221,7 @@ impl MapTableFact {
                 }
             }
             [u, v, ..] => {
-                for output in &self.outputs {
-                    // Names of tables have no dots.
-                    let name = output.name.replace(|c: char| !c.is_ascii_alphanumeric(), "_");
+                for (output, name) in self.outputs.iter().zip(&names) {
                     writeln!(out, "double {name}({},{})", 1 + u.knots.len(), 1 + v.knots.len())?;
                     row(&mut out, &mut [0.0].into_iter().chain(v.knots.iter().copied()))?;
                     for (i, u) in u.knots.iter().enumerate() {
@@ -226,6 +233,25 @@ impl MapTableFact {
             [] => {}
         }
         Ok(())
+    }
+
+    /// Names of the outputs' tables for Modelica, in which names have no dots; no two are the same.
+    fn table_names(&self) -> Vec<String> {
+        let plain = |name: &str| name.replace(|c: char| !c.is_ascii_alphanumeric(), "_");
+        // Outputs with such a name have it unchanged.
+        let names = self.outputs.iter().map(|output| &output.name);
+        let mut taken: HashSet<String> = names.filter(|name| plain(name) == **name).cloned().collect();
+        let one = |output: &MapColumnFact| {
+            let plain = plain(&output.name);
+            let mut table = plain.clone();
+            let mut count = 1;
+            while plain != output.name && !taken.insert(table.clone()) {
+                count += 1;
+                table = format!("{plain}_{count}");
+            }
+            table
+        };
+        self.outputs.iter().map(one).collect()
     }
 }
 

@@ -1,10 +1,10 @@
 //! `summary.json`: what was run, the outcome, and the largest sensitivities.
 
+use hardpoint::Analysis;
 use hardpoint::Solution;
 use hardpoint::joint::Quantity;
 use hardpoint::model::{Model, OutputSource};
 use hardpoint::motion::{Stop, StopKind};
-use hardpoint::topology::Topology;
 use hardpoint_file::{Diagnostic, ModelFile, Units};
 use serde::Serialize;
 
@@ -228,8 +228,8 @@ impl Summary {
     }
 
     /// Summary of a run, without files.
-    pub fn new(file: &ModelFile, topology: &Topology, course: &Course) -> Self {
-        let (model, solution) = (&file.model, &course.kept);
+    pub fn new(file: &ModelFile, analysis: &Analysis<'_>, course: &Course) -> Self {
+        let (model, topology, solution) = (&file.model, analysis.topology(), &course.kept);
         let rigid = rigid::solve(file, topology.formulation, &solution.motion.times);
         let rigid_metrics = rigid::metrics(model, rigid.as_ref().and_then(|solved| solved.as_ref().ok()));
         let effort = solution.motion.effort;
@@ -240,7 +240,7 @@ impl Summary {
                 Some(s) if s.kind == StopKind::Interrupted => RunStatus::Interrupted,
                 Some(_) => RunStatus::Stopped,
             },
-            model: Facts::new(file, topology, Some(solution)),
+            model: Facts::new(file, analysis, Some(solution)),
             steps: Steps {
                 solved: course.steps,
                 asked: model.times.len(),

@@ -221,6 +221,7 @@ fn status_word(outcome: Outcome) -> &'static str {
         Outcome::NoConflict => "no_conflict",
         Outcome::Interrupted => "interrupted",
         Outcome::NoAnchor(..) => "no_optimum",
+        Outcome::NoEnd(_) => "no_end",
     }
 }
 
@@ -307,6 +308,11 @@ impl TradeOffFacts {
                 "the optimum of goal `{}` alone was not found: {}",
                 self.goals[goal].name,
                 status_sentence(status)
+            ),
+            Outcome::NoEnd(goal) => format!(
+                "at the optimum of goal `{}` another goal or a limit has no value or no derivative, so that the front has no end: \
+                 change the bounds so that this design is outside of them",
+                self.goals[goal].name
             ),
         }
     }

@@ -25,4 +25,4 @@ pub use bounded::{FreeDirections, bounded_least_squares};
 pub use least_squares::{Derivatives, LeastSquares, Residuals};
 pub use sequential::{Program, Sequential};
 pub use singular::{Singular, singular};
-pub use vector::{dot, norm};
+pub use vector::{dot, independent, norm};

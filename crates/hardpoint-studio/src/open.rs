@@ -67,7 +67,7 @@ impl OpenModel {
             return Err(vec![stop.clone()]);
         }
         let nominal = Course::of(&bare.model, &solution);
-        let summary = Summary::new(&bare, analysis.topology(), &nominal);
+        let summary = Summary::new(&bare, &analysis, &nominal);
         let shown = model.shown.unwrap_or_else(|| {
             let request = Request::of(&bare, &analysis, &nominal, &summary);
             payload::payload(&request).model.and_then(|m| m.shown).unwrap_or(Detail {

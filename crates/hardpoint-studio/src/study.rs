@@ -36,7 +36,7 @@ pub(crate) fn page(model: &ModelText) -> Result<Payload, EngineError> {
         return Err(vec![DiagnosticMessage::of(&model.text, &diagnose::stop(&file, stop, 0, None))]);
     }
     let course = Course::of(&file.model, &solution);
-    let mut summary = Summary::new(&file, analysis.topology(), &course);
+    let mut summary = Summary::new(&file, &analysis, &course);
     if course.stride == 1 && !solution.measured.outputs.is_empty() {
         let found = validity(&analysis, &solution, |_| true);
         summary.validity = ValidityFact::all(&file.model, file.units, &solution, &found);

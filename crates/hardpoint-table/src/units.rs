@@ -179,6 +179,24 @@ impl Units {
         value * self.per_si(of)
     }
 
+    /// Converts a value in SI to the number of the user's unit with the fewest digits that is read as this value: a
+    /// number of the user comes back as it was written.
+    ///
+    /// ```
+    /// use hardpoint::joint::Quantity;
+    /// use hardpoint_table::{AngleUnit, Units};
+    ///
+    /// let units = Units { angle: AngleUnit::Degree, ..Units::default() };
+    /// let angle = units.to_si(Quantity::Angle, -30.0);
+    /// assert_eq!(units.from_si(Quantity::Angle, angle), -29.999999999999996);
+    /// assert_eq!(units.shortest_from_si(Quantity::Angle, angle), -30.0);
+    /// ```
+    pub fn shortest_from_si(self, quantity: Quantity, value: f64) -> f64 {
+        let exact = self.from_si(quantity, value);
+        let rounded = |digits: usize| format!("{exact:.digits$e}").parse::<f64>().unwrap_or(exact);
+        (0..17).map(rounded).find(|x| self.to_si(quantity, *x) == value).unwrap_or(exact)
+    }
+
     /// Converts a derivative "`of` per `by`" from SI to the user's units.
     ///
     /// ```

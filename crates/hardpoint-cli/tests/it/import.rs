@@ -128,3 +128,54 @@ fn an_open_loop_is_reported_first_and_closed_on_request() {
     run(&["--close", "coupler"]).code(2);
     run(&["--close", "coupler=nowhere"]).code(3);
 }
+
+#[test]
+fn shapes_of_other_models_and_of_the_source_are_kept() {
+    let folder = with("door.urdf", ROBOT);
+    let read = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
+    let run = |source: &str, output: &str| {
+        hardpoint(folder.path()).args(["import", source, "-o", output]).assert().success();
+    };
+    run("door.urdf", "one.toml");
+    let first = read("one_meshes/leaf.stl");
+    // Another robot of the same name, in its own folder.
+    std::fs::create_dir(folder.path().join("other")).unwrap();
+    std::fs::write(folder.path().join("other/door.urdf"), ROBOT.replace("0.8 0.04 2", "1 2 3")).unwrap();
+    run("other/door.urdf", "two.toml");
+    assert_eq!(read("one_meshes/leaf.stl"), first);
+    assert_ne!(read("two_meshes/leaf.stl"), first);
+    // Files of the same model are replaced.
+    run("other/door.urdf", "one.toml");
+    assert_eq!(read("one_meshes/leaf.stl"), read("two_meshes/leaf.stl"));
+    // A mesh of the source is kept, also by the next import.
+    std::fs::create_dir(folder.path().join("arm_meshes")).unwrap();
+    std::fs::write(folder.path().join("arm_meshes/leaf.stl"), &first).unwrap();
+    let shape = r#"<mesh filename="arm_meshes/leaf.stl" scale="2 2 2"/>"#;
+    let text = ROBOT.replace(r#"<box size="0.8 0.04 2"/>"#, shape);
+    std::fs::write(folder.path().join("arm.urdf"), text).unwrap();
+    for _ in 0..2 {
+        run("arm.urdf", "arm.toml");
+        assert_eq!(read("arm_meshes/leaf.stl"), first);
+        assert!(String::from_utf8_lossy(&read("arm.toml")).contains("\"arm_meshes_2/leaf.stl\""));
+        assert!(!folder.path().join("arm_meshes_3").exists());
+    }
+}
+
+#[test]
+fn a_model_that_needs_corrections_ends_with_the_exit_code_of_its_check() {
+    let points = "hardpoints:\n  left:\n    lower_wishbone_outboard: {x: 5, y: 760, z: 170}\n\
+                  \x20   upper_wishbone_outboard: {x: -15, y: 720, z: 440}\nunits: millimeters\ntype: double_wishbone\n";
+    // A triangle of two parts on ground, of which both are driven.
+    let driven = "over\nUNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=MILLIMETER, TIME=SECOND\nPART/1, GROUND\nMARKER/1, PART=1\n\
+                  PART/2\nMARKER/2, PART=2\nMARKER/3, PART=2, QP=100,0,0\nPART/3, QG=100,0,0\nMARKER/4, PART=3\n\
+                  MARKER/5, PART=1, QP=200,0,0\nMARKER/6, PART=3, QP=100,0,0\nJOINT/1, REVOLUTE, I=2, J=1\n\
+                  JOINT/2, REVOLUTE, I=4, J=3\nJOINT/3, REVOLUTE, I=6, J=5\nMOTION/1, JOINT=1, ROTATIONAL, FUNCTION=TIME\n\
+                  MOTION/2, JOINT=3, ROTATIONAL, FUNCTION=TIME\nEND\n";
+    for (name, text, code, exit) in [("points.yaml", points, "HP0807", 3), ("over.adm", driven, "HP03", 4)] {
+        let folder = with(name, text);
+        let out = hardpoint(folder.path()).args(["import", name, "-o", "m.toml"]).assert().code(exit);
+        let output = String::from_utf8_lossy(&out.get_output().stderr).into_owned();
+        assert!(output.contains(code) && output.contains("written anyway"), "{output}");
+        hardpoint(folder.path()).args(["check", "m.toml"]).assert().code(exit);
+    }
+}

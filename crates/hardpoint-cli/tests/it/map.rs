@@ -66,3 +66,48 @@ fn the_error_of_a_plain_number_has_no_unit() {
     let line = text.lines().find(|line| line.contains("error at most")).unwrap();
     assert!(line.contains(" everywhere") && !line.contains(" 1 everywhere"), "{line}");
 }
+
+#[test]
+fn the_ends_of_a_table_are_the_numbers_of_the_request() {
+    let bench = Bench::with(&[]);
+    bench.put("crank.toml", &CRANK.replace("angle = \"rad\"", "angle = \"deg\""));
+    // -30 deg is -0.5235987755982988 rad, and that times 180/pi is -29.999999999999996.
+    for (over, ends) in [("motor=-30..30", [-30.0, 30.0]), ("motor=-0.1..12.3", [-0.1, 12.3])] {
+        let arguments =
+            ["map", "crank.toml", "--over", over, "--of", "A.x", "--error", "1e-3mm", "-o", "x.json"];
+        let output = bench.run(&arguments);
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        let json = bench.json("x.json");
+        let knots = json["drivers"][0]["knots"].as_array().unwrap();
+        assert_eq!([&knots[0], &knots[knots.len() - 1]].map(|x| x.as_f64().unwrap()), ends);
+    }
+}
+
+#[test]
+fn tables_of_modelica_have_different_names() {
+    let bench = Bench::with(&[]);
+    let model = r#"
+name = "two cranks"
+units = { length = "mm", angle = "deg" }
+planar = "xy"
+hardpoints = { O = [0, 0], A = [20, 5], Q = [100, 0], B = [100, 30] }
+bodies = { ground = ["O", "Q"], crank = ["O", "A"], arm = ["Q", "B"] }
+drivers = { one = { joint = "O", law = "t" }, two = { joint = "Q", law = "t" } }
+points = { A = { body = "crank", at = "A" }, B = { body = "arm", at = "B" } }
+measures."a b" = { type = "position", point = "A", along = "x" }
+measures.a_b = { type = "position", point = "B", along = "x" }
+time = { end = 1, steps = 4 }
+"#;
+    bench.put("cranks.toml", model);
+    let over = ["--over", "one=0..10", "--over", "two=0..10"];
+    let rest = ["--of", "a b,a_b", "--error", "0.1mm", "-o", "x.txt"];
+    let output = bench.run(&[&["map", "cranks.toml"][..], &over, &rest].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = bench.text("x.txt");
+    let tables: Vec<&str> = text.lines().filter_map(|line| line.strip_prefix("double ")).collect();
+    let names: Vec<&str> = tables.iter().filter_map(|line| Some(line.split_once('(')?.0)).collect();
+    // As in C and FMUs: a name without other characters remains.
+    assert_eq!(names, ["a_b_2", "a_b"]);
+    let heading = text.lines().find(|line| line.starts_with("# a b in ")).unwrap();
+    assert!(heading.ends_with("(proved), table a_b_2"), "{heading}");
+}

@@ -283,7 +283,17 @@ impl<'a> Composer<'_, '_, 'a> {
         }
         let own: HashSet<String> = all.into_iter().filter(|name| !shared.contains(name)).collect();
         if !prefix.is_empty() {
-            renamed(self.format, &mut part, &prefix, &own);
+            let in_expressions = renamed(self.format, &mut part, &prefix, &own);
+            if in_expressions && !prefix.chars().all(|c| c.is_alphanumeric() || c == '_') {
+                let message = format!(
+                    "the prefix `{}` makes names that expressions cannot contain, as those of `{}` do",
+                    shown(&prefix),
+                    shown(&asked)
+                );
+                self.r.report("HP0117", at, message).help =
+                    Some("write it with letters, digits and `_`, like `left_`".into());
+                return None;
+            }
             self.origins.renamed(&prefix, &own);
         }
         for name in declared(&part.table) {
@@ -369,18 +379,23 @@ fn files_from_there(format: &'static Table, table: &mut DeTable<'_>, from: &str)
     }
 }
 
-/// Adds a prefix to all occurrences of these names.
-fn renamed(format: &'static Table, part: &mut Both<'_>, prefix: &str, own: &HashSet<String>) {
+/// Adds a prefix to all occurrences of these names. Returns true if there are some in expressions.
+fn renamed(format: &'static Table, part: &mut Both<'_>, prefix: &str, own: &HashSet<String>) -> bool {
     let say = |name: &str| {
         let base = name.split('.').next().unwrap_or(name);
         own.contains(base).then(|| format!("{prefix}{name}"))
     };
-    let rename = |shape: Shape, value: &mut Value<'_>| {
+    let mut in_expressions = false;
+    let mut rename = |shape: Shape, value: &mut Value<'_>| {
         walk("", shape, value, &mut |_, leaf| match leaf {
             // Cases belong to the whole model, even if another entry of the file has such a name.
             Leaf::Name("a column" | "a parameter of the law" | "a case" | "a coordinate", _) => {}
             Leaf::Name(_, name) => *name = say(name).map_or(Cow::Owned(name.to_string()), Cow::Owned),
-            Leaf::Expression(text) => in_expression(text, say),
+            Leaf::Expression(text) => {
+                let before = text.len();
+                in_expression(text, say);
+                in_expressions |= text.len() != before;
+            }
             _ => {}
         });
     };
@@ -397,6 +412,7 @@ fn renamed(format: &'static Table, part: &mut Both<'_>, prefix: &str, own: &Hash
             (say(&name).unwrap_or(name), value)
         })
         .collect();
+    in_expressions
 }
 
 /// Adds the declarations of a file to those of others; existing ones take precedence.

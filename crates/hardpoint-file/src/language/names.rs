@@ -130,6 +130,15 @@ fn sections_of(kind: &str) -> &'static [(&'static str, bool)] {
     }
 }
 
+/// Section of entries that are declared inside of another section; nothing else refers to them.
+fn nested_section(kind: &str) -> Option<&'static str> {
+    match kind {
+        "a correlation" => Some("tolerance.correlations"),
+        "a group" => Some("calibrate.groups"),
+        _ => None,
+    }
+}
+
 /// Sections of names in expressions.
 const IN_EXPRESSIONS: [(&str, bool); 7] = [
     ("parameters", false),
@@ -261,7 +270,9 @@ impl Index {
             Tree::Table(members) => {
                 if let Some(Shape::Entries(kind, of)) = all.iter().find(|s| matches!(s, Shape::Entries(..))) {
                     for member in members {
-                        if is_reference(kind, member) {
+                        if let Some(section) = nested_section(kind) {
+                            self.key(text, NameUse::Declaration(section), member);
+                        } else if is_reference(kind, member) {
                             self.key(text, NameUse::Key(kind), member);
                         }
                         self.value(text, &[**of], &member.value, of_measure);
@@ -421,10 +432,12 @@ fn variables_of(section: &str, entry: &Member) -> Vec<String> {
     axes.chars().map(|axis| format!("{}_{axis}", entry.name)).collect()
 }
 
-/// True if a key of such a table names an entry. Goals and limits have names of their own if they name their metric.
+/// True if a key of such a table names an entry of a section. Goals and limits have names of their own if they name
+/// their metric.
 fn is_reference(kind: &str, member: &Member) -> bool {
     const OF_LIMITS: [&str; 6] = ["metric", "hardpoint", "between", "length", "clearance", "joint"];
-    kind != "a metric" || !OF_LIMITS.iter().any(|key| member.value.get(key).is_some())
+    let is_own = kind == "a metric" && OF_LIMITS.iter().any(|key| member.value.get(key).is_some());
+    !is_own && !sections_of(kind).is_empty()
 }
 
 /// Range of a name without its quotes, and whether it is written there without escapes.

@@ -1,7 +1,12 @@
 //! A new name for an entry, at all its places.
 
+use std::fmt::Write;
+use std::hash::{DefaultHasher, Hasher};
 use std::ops::Range;
 use std::path::Path;
+
+use hardpoint::draft::matches_pattern;
+use hardpoint::model::Model;
 
 use crate::read::parse_in;
 use crate::values::shown;
@@ -47,8 +52,8 @@ impl Document {
     }
 
     /// Edits that give the entry at a byte of the text another name, wherever the text names it. Mirror images, and
-    /// the variables of a point, follow. The renamed text is read again: it must be a valid model with the same
-    /// references. `folder` is the folder of the file, if it has one.
+    /// the variables of a point, follow. The renamed text is read again: it must be the same model except for names,
+    /// and patterns must match the same entries. `folder` is the folder of the file, if it has one.
     ///
     /// # Errors
     /// Fails if the name cannot be changed without changing the model.
@@ -103,28 +108,96 @@ impl Document {
         edits: &[(Range<usize>, String)],
         folder: Option<&Path>,
     ) -> Result<(), RenameError> {
-        let file = parse_in(folder, &self.text, "model").map_err(|all| {
+        let before = parse_in(folder, &self.text, "model").map_err(|all| {
             let first = all.list().first().map_or("", |d| d.message.as_str());
             RenameError(format!("correct the errors of the file first: {first}"))
         })?;
-        if let Some(included) = file.origins.included.get(&entry.name) {
+        if let Some(included) = before.origins.included.get(&entry.name) {
             let why = format!("`{}` changes an entry of the included file `{included}`", shown(&entry.name));
+            return Err(RenameError(why));
+        }
+        let (old, now) = (shown(&entry.name), shown(new));
+        if let Some((pattern, is_matched)) = self.changed_pattern(&entry.name, new, entry.section) {
+            let (yes, no) = if is_matched { (&old, &now) } else { (&now, &old) };
+            let why = format!("the pattern `{}` matches `{yes}` but not `{no}`", shown(pattern));
             return Err(RenameError(why));
         }
         let mut text = self.text.clone();
         for (at, name) in edits.iter().rev() {
             text.replace_range(at.clone(), name);
         }
-        parse_in(folder, &text, "model").map_err(|all| {
+        let [image, image_now] = [entry.name.as_str(), new].map(|name| self.index.image(name));
+        let lost =
+            image.as_ref().filter(|image| image_now.is_none() && before.origins.names.contains_key(*image));
+        let lost = lost.map(|image| {
+            let image = shown(image);
+            format!("`{now}` has no word of a side, so the mirror image `{image}` of `{old}` would be lost")
+        });
+        let after = parse_in(folder, &text, "model").map_err(|all| {
             let first = all.list().first().map_or("", |d| d.message.as_str());
-            RenameError(format!("with the name `{}` the model has an error: {first}", shown(new)))
+            let why = || format!("with the name `{now}` the model has an error: {first}");
+            RenameError(lost.clone().unwrap_or_else(why))
         })?;
         let renamed = Self::new(&text);
-        let entry = EntryName { section: entry.section, name: new.to_owned() };
-        if renamed.index.occurrences(&entry).count() != edits.len() {
-            let why = format!("another entry is named `{}` where this one is used", shown(new));
+        let entry_now = EntryName { section: entry.section, name: new.to_owned() };
+        if renamed.index.occurrences(&entry_now).count() != edits.len() {
+            let why = format!("another entry is named `{now}` where this one is used");
             return Err(RenameError(why));
         }
-        Ok(())
+        if structure(&before.model) == structure(&after.model) {
+            return Ok(());
+        }
+        let gained = image_now.filter(|name| image.is_none() && after.origins.names.contains_key(name));
+        let gained = gained.map(|image| {
+            let image = shown(&image);
+            format!("`{now}` has a word of a side, so it would have a mirror image `{image}`")
+        });
+        let other =
+            || format!("the model depends on the name `{old}`: with `{now}` it would not be the same");
+        Err(RenameError(lost.or(gained).unwrap_or_else(other)))
     }
+
+    /// Pattern of shapes that matches only one of the names of a shape: the old one if true.
+    fn changed_pattern(&self, old: &str, new: &str, section: &str) -> Option<(&str, bool)> {
+        let is_pattern = |o: &&super::Occurrence| {
+            matches!(o.of, NameUse::Key("a shape") | NameUse::Value("a shape")) && o.name.contains('*')
+        };
+        let patterns = self.index.names.iter().filter(is_pattern).map(|o| o.name.as_str());
+        let mut patterns = patterns.filter(|_| section == "shapes");
+        patterns.find_map(|pattern| {
+            let is_matched = matches_pattern(pattern, old);
+            (is_matched != matches_pattern(pattern, new)).then_some((pattern, is_matched))
+        })
+    }
+}
+
+/// Digest of everything in a model except texts, and so except names: its parts refer to each other by number.
+fn structure(model: &Model) -> u64 {
+    /// Writer that omits what is between quotes.
+    #[derive(Default)]
+    struct WithoutTexts {
+        digest: DefaultHasher,
+        in_text: bool,
+        is_escaped: bool,
+    }
+    impl Write for WithoutTexts {
+        fn write_str(&mut self, part: &str) -> std::fmt::Result {
+            for byte in part.bytes() {
+                if std::mem::take(&mut self.is_escaped) {
+                    continue;
+                }
+                match byte {
+                    b'"' => self.in_text = !self.in_text,
+                    b'\\' if self.in_text => self.is_escaped = true,
+                    _ if self.in_text => {}
+                    byte => self.digest.write_u8(byte),
+                }
+            }
+            Ok(())
+        }
+    }
+    let mut writer = WithoutTexts::default();
+    // This writer has no errors.
+    let _ = write!(writer, "{model:?}");
+    writer.digest.finish()
 }

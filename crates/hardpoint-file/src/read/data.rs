@@ -174,11 +174,19 @@ fn points_of_text(
     columns: &[Column; 2],
     of: &Curve,
 ) -> Result<Vec<[f64; 2]>, DataError> {
+    let units = r.units;
     let text = r.text_of_file(name, &of.wanted)?;
-    parse(text.strip_prefix('\u{feff}').unwrap_or(text), &shown(name), columns, of)
+    parse(text.strip_prefix('\u{feff}').unwrap_or(text), &shown(name), columns, of, units)
 }
 
-fn parse(text: &str, name: &str, columns: &[Column; 2], of: &Curve) -> Result<Vec<[f64; 2]>, DataError> {
+/// Points of a CSV text, in these units: those of titles with other units of length or angle are converted.
+fn parse(
+    text: &str,
+    name: &str,
+    columns: &[Column; 2],
+    of: &Curve,
+    units: Units,
+) -> Result<Vec<[f64; 2]>, DataError> {
     let mut reader = records_of(text);
     let mut record = csv::StringRecord::new();
     let mut header: Option<Vec<String>> = None;
@@ -192,17 +200,20 @@ fn parse(text: &str, name: &str, columns: &[Column; 2], of: &Curve) -> Result<Ve
             header = Some(record.iter().map(|name| unquoted(name).to_owned()).collect());
             continue;
         }
-        let places = match taken {
-            Some(places) => places,
-            None => *taken.insert(
-                found(columns, header.as_deref(), record.len(), name, of).map_err(DataError::of_columns)?,
-            ),
+        let (places, scales) = match taken {
+            Some(taken) => taken,
+            None => {
+                let places = found(columns, header.as_deref(), record.len(), name, of)
+                    .map_err(DataError::of_columns)?;
+                *taken.insert((places, scales(places, header.as_deref(), name, of, units)?))
+            }
         };
         let mut point = [0.0; 2];
-        for (k, place) in places.into_iter().enumerate() {
+        for (k, (place, scale)) in places.into_iter().zip(scales).enumerate() {
             let title = header.as_ref().and_then(|h| h.get(place)).map(|h| format!(" (`{}`)", shown(h)));
             let here = format!("`{name}`, line {line}, column {}{}", place + 1, title.unwrap_or_default());
-            point[k] = number(record.get(place).map(unquoted), &here, "every row needs both columns")?;
+            point[k] =
+                scale * number(record.get(place).map(unquoted), &here, "every row needs both columns")?;
         }
         if let Some(before) = points.last().filter(|before| point[0] <= before[0]) {
             let message = format!(
@@ -271,6 +282,8 @@ fn found(
     name: &str,
     of: &Curve,
 ) -> Result<[usize; 2], DataError> {
+    // With its unit or without.
+    let is = |title: &str, wanted: &str| title == wanted || Title::of(title).name == wanted;
     let mut places = [0; 2];
     for (place, column) in places.iter_mut().zip(columns) {
         *place = match (column, header) {
@@ -281,14 +294,14 @@ fn found(
                 let help = "separate columns with commas, semicolons or tabs, and choose two with `columns = [1, 2]`";
                 return Err(DataError::content(message, help).note(format!("its first line has {columns}")));
             }
-            (Column::Named(wanted), Some(header)) if header.iter().filter(|h| *h == wanted).count() > 1 => {
+            (Column::Named(wanted), Some(header)) if header.iter().filter(|h| is(h, wanted)).count() > 1 => {
                 let at: Vec<String> =
-                    (1..).zip(header).filter(|(_, h)| *h == wanted).map(|(n, _)| n.to_string()).collect();
+                    (1..).zip(header).filter(|(_, h)| is(h, wanted)).map(|(n, _)| n.to_string()).collect();
                 let message = format!("`{name}` has several columns `{}`", shown(wanted));
                 let help = "rename them in the file, or choose columns by number, like `columns = [1, 2]`";
                 return Err(DataError::content(message, help).note(format!("columns {}", at.join(", "))));
             }
-            (Column::Named(wanted), Some(header)) => match header.iter().position(|h| h == wanted) {
+            (Column::Named(wanted), Some(header)) => match header.iter().position(|h| is(h, wanted)) {
                 Some(k) => k,
                 None => {
                     let message = format!("`{name}` has no column `{}`", shown(wanted));
@@ -318,6 +331,33 @@ fn found(
         return Err(DataError::content(message, &format!("name two columns, the {x} first")));
     }
     Ok(places)
+}
+
+/// Factors from the units in the titles of two columns to these; 1 without a unit of length or angle.
+fn scales(
+    places: [usize; 2],
+    header: Option<&[String]>,
+    name: &str,
+    of: &Curve,
+    units: Units,
+) -> Result<[f64; 2], DataError> {
+    let unit = |place: usize| header.and_then(|titles| Title::of(titles.get(place)?).unit);
+    let [abscissa, value] = places.map(unit);
+    if let Some(written) = abscissa.as_deref().filter(|unit| of.abscissa == "time" && *unit != "s") {
+        let message = format!("the times of `{name}` are in `{}`", shown(written));
+        return Err(DataError::content(message, "give times in s"));
+    }
+    let scale = |written: Option<String>| {
+        let Some(written) = written else { return 1.0 };
+        let length = LengthUnit::ALL.into_iter().find(|unit| unit.symbol() == written);
+        let angle = AngleUnit::ALL.into_iter().find(|unit| unit.symbol() == written);
+        match (length, angle) {
+            (Some(length), _) => units.length.per_metre() / length.per_metre(),
+            (None, Some(angle)) => units.angle.per_radian() / angle.per_radian(),
+            (None, None) => 1.0,
+        }
+    };
+    Ok([scale(abscissa), scale(value)])
 }
 
 /// Title of a column.

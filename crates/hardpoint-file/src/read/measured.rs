@@ -246,7 +246,7 @@ impl ModelFile {
         let moving = readings.iter().map(|r| &outputs[r.output]);
         if let Some(output) = moving.clone().find(|o| !self.model.is_known_at_rest(o.source)) {
             let message =
-                format!("`{}` cannot be compared: it has no value for a mechanism at rest", output.name);
+                format!("`{}` cannot be compared: it does not follow from positions alone", output.name);
             return Err(DataError::new("HP0248", message, "remove its column, or begin its title with `#`")
                 .note("every line is a posture with the positions of all drivers"));
         }

@@ -37,6 +37,42 @@ impl ModelFile {
         if faults.is_empty() { Ok(text) } else { Err(Diagnostics::new(self.source.clone(), faults)) }
     }
 
+    /// Names of all files that the model reads, relative to its folder: included files, data and shapes, also those
+    /// that included files name.
+    pub fn file_names(&self) -> BTreeSet<String> {
+        let mut names = BTreeSet::new();
+        let mut texts = vec![(String::new(), self.text())];
+        while let Some((folder, text)) = texts.pop() {
+            renamed(text, &mut |section, name| {
+                let name = format!("{folder}{name}");
+                let text = self.texts.get(&name).filter(|_| section == "include");
+                if names.insert(name.clone())
+                    && let Some(text) = text
+                {
+                    let end = name.rfind('/').map_or(0, |end| end + 1);
+                    texts.push((name[..end].to_owned(), text));
+                }
+                None
+            });
+        }
+        names
+    }
+
+    /// Checks that a copy of the model at `to` would not overwrite a file that the model reads. `from` is the folder of
+    /// this file.
+    ///
+    /// # Errors
+    /// Names the file if it would.
+    pub fn spares_its_files(&self, from: &Path, to: &Path) -> Result<(), Diagnostics> {
+        let Ok(to) = to.canonicalize() else { return Ok(()) };
+        let is_target = |name: &String| from.join(name).canonicalize().is_ok_and(|file| file == to);
+        let Some(name) = self.file_names().into_iter().find(is_target) else { return Ok(()) };
+        let name = shown(&name);
+        let message = format!("the model cannot be saved as `{name}`: it reads this file");
+        let fault = self.diagnostic(Severity::Error, CODE, message, None).help("save it under another name");
+        Err(Diagnostics::new(self.source.clone(), vec![fault]))
+    }
+
     /// HP0505: a file that the folder of a copy of the model does not have, or an included file there that names one.
     fn missing(&self, name: &str, is_included: bool, from: Option<&Path>, to: &Path) -> Option<Diagnostic> {
         let own = match from {

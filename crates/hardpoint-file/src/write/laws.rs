@@ -67,7 +67,20 @@ impl Edit<'_> {
         let places = places_in_law(name);
         let written =
             places.iter().any(|place| self.write(&[&law, &place[..]].concat(), quantity, old.value, new));
+        if written && name == "f[0]" {
+            self.close_period(&law, quantity, old.value, new);
+        }
         written || self.add_to_law(&law, name, quantity, old.value, new)
+    }
+
+    /// Writes the last point of a periodic table, which is its first again.
+    fn close_period(&mut self, law: &[Step<'_>], quantity: Quantity, old: f64, new: f64) {
+        let Some(table) = table_at(&mut self.document, law) else { return };
+        let is_periodic = table.get("ends").and_then(Item::as_str) == Some("periodic");
+        let points = table.get("points").and_then(Item::as_array).map_or(0, toml_edit::Array::len);
+        if is_periodic && points > 0 {
+            self.write(&[law, &[Key("points"), At(points - 1), At(1)]].concat(), quantity, old, new);
+        }
     }
 
     /// Adds a parameter that the law does not give, because it has a default.

@@ -916,3 +916,30 @@ corner_x = { move = "the corner", along = "x" }
     let difference = (least(&[0.0, h]).at.distance[0] - least(&[0.0, -h]).at.distance[0]) / (2.0 * h);
     assert!((difference - nominal.d[1]).abs() < 1e-6 && difference.abs() > 0.1, "{difference} {nominal:?}");
 }
+
+/// Laws that have no rate or acceleration at one moment between output times: the motion ends there, and so does all
+/// that is said.
+#[test]
+fn a_law_without_rates_at_a_moment_ends_the_clearances_there() {
+    for law in ["-25*sqrt(abs(t-0.3))", "-25*abs(t-0.3)^1.5"] {
+        for steps in [7, 11] {
+            let model = model_of(&format!(
+                "name = \"c\"\nunits = {{ length = \"mm\", angle = \"deg\" }}\ntime = {{ end = 1.0, steps = {steps} }}\n\
+                 bodies = {{ s = {{}} }}\n\
+                 joints.j = {{ type = \"translational\", bodies = [\"ground\", \"s\"], at = [0, 0, 0], axis = \"x\" }}\n\
+                 drivers.d = {{ joint = \"j\", law = \"{law}\" }}\n[shapes]\n\
+                 a = {{ body = \"ground\", sphere = [-30, 0, 0], radius = 5 }}\n\
+                 b = {{ body = \"s\", sphere = [0, 0, 0], radius = 5 }}\n[clearances.c]\nbetween = [\"a\", \"b\"]\n"
+            ));
+            let analysis = Analysis::new(&model).unwrap();
+            let found = analysis.clearances(&[]);
+            let stop = found.stop.as_ref().unwrap_or_else(|| panic!("{law}, {steps} steps"));
+            assert!(stop.last_time.is_some_and(|t| t <= 0.3), "{law}, {steps} steps: {stop:?}");
+            let pair = pair(&model, &found, "c");
+            assert!(pair.end <= 0.3 && pair.curve.iter().all(|at| at.time <= 0.3), "{law}: {}", pair.end);
+            let mut prover = analysis.clearance_prover(&[]).unwrap();
+            let claim = pair.least().unwrap().at.distance[0] - 1e-3;
+            _ = prover.prove(pair.shapes, claim);
+        }
+    }
+}

@@ -189,7 +189,7 @@ fn mistakes_in_included_files() {
         AXLE.replace(from, to)
     };
     let lift = ("lift.csv", "0, 0\n1, 10\n".to_owned());
-    let cases: [(&str, String, String); 11] = [
+    let cases: [(&str, String, String); 12] = [
         ("included_misspelt_key", AXLE.into(), corner("axis = \"x\"", "axes = \"x\"")),
         ("included_unknown_hardpoint", AXLE.into(), corner("at = \"pivot\"", "at = \"pivet\"")),
         ("included_no_toml", AXLE.into(), corner("[bodies]", "[bodies")),
@@ -209,6 +209,7 @@ fn mistakes_in_included_files() {
         ("included_with_unknown_shared", axle("\"slide\"", "\"slyde\""), CORNER.into()),
         ("included_as_a_text", axle("include = [", "include = \"corner.toml\" #"), CORNER.into()),
         ("included_with_misspelt_key", axle("prefix", "prefics"), CORNER.into()),
+        ("included_with_hyphen", axle("prefix = \"left_\"", "prefix = \"left-\""), CORNER.into()),
     ];
     for (name, axle, corner) in cases {
         let folder = folder(&[("axle.toml", &axle), ("corner.toml", &corner), (lift.0, &lift.1)]);
@@ -266,6 +267,14 @@ fn a_model_saved_in_another_folder_reads_the_same_files() {
     let copied = axle.text_for(text, Some(&axles), &other).unwrap();
     assert_eq!(copied, text);
     assert_eq!(heights(&other, &copied), own);
+    // A copy does not overwrite what it reads, also what an included file reads.
+    for name in ["corner.toml", "lift.csv"] {
+        let found = axle.spares_its_files(&axles, &axles.join("../axles").join(name)).unwrap_err();
+        let message = &found.list()[0].message;
+        assert!(message.contains(&format!("cannot be saved as `{name}`: it reads this file")), "{message}");
+    }
+    assert!(axle.spares_its_files(&axles, &axles.join("axle.toml")).is_ok());
+    assert!(axle.spares_its_files(&axles, &axles.join("new.toml")).is_ok());
     // A text without a folder has the texts of its files, but not the files.
     let sent = parse_with(text, "axle.toml", &axle.texts).unwrap();
     assert_eq!(sent.text_for(text, None, &other).unwrap(), text);

@@ -155,6 +155,68 @@ fn renaming_is_refused_where_it_would_change_the_model() {
 }
 
 #[test]
+fn a_measure_does_not_become_a_constant_of_expressions() {
+    for needle in ["[measures]\nheight", "2*height"] {
+        let why = renamed(STRUT, after(STRUT, needle), "pi", None).unwrap_err();
+        assert!(why.contains("no expression can use a measure named `pi`"), "{why}");
+    }
+    // Without a use in an expression, too; and in a file.
+    let text = STRUT.replace("2*height", "2*tip.x");
+    let why = renamed(&text, after(&text, "[measures]\nheight"), "pi", None).unwrap_err();
+    assert!(why.contains("no expression can use a measure named `pi`"), "{why}");
+    let error = hardpoint_file::parse(&text.replace("height", "pi"), "strut.toml").unwrap_err();
+    let first = &error.list()[0];
+    assert_eq!(
+        (first.code, first.message.as_str()),
+        ("HP0201", "no expression can use a measure named `pi`: it is a constant there")
+    );
+}
+
+#[test]
+fn entries_that_patterns_match_keep_matching_them() {
+    let text = r#"
+name = "pins"
+units = { length = "mm", angle = "deg" }
+bodies = { a = {} }
+joints.h = { type = "revolute", bodies = ["ground", "a"], at = [0, 0, 0], axis = "z" }
+drivers.m = { joint = "h", law = "10*t" }
+time = { end = 1, steps = 1 }
+[shapes]
+pin_1 = { body = "a", sphere = [100, 0, 0], radius = 5 }
+pin_2 = { body = "a", sphere = [0, 100, 0], radius = 5 }
+cap = { body = "a", sphere = [0, 50, 0], radius = 5 }
+wall = { body = "ground", sphere = [130, 0, 0], radius = 5 }
+[clearances.k]
+between = ["pin_*", "wall"]
+min = { pin_2 = 30 }
+"#;
+    let named = |needle: &str, new: &str| renamed(text, after(text, needle), new, None);
+    let why = named("[shapes]\npin_1", "bolt").unwrap_err();
+    assert_eq!(why, "the pattern `pin_*` matches `pin_1` but not `bolt`");
+    let why = named("\ncap", "pin_3").unwrap_err();
+    assert_eq!(why, "the pattern `pin_*` matches `pin_3` but not `cap`");
+    let other = named("[shapes]\npin_1", "pin_9").unwrap();
+    assert!(other.contains("pin_9 = { body") && other.contains("[\"pin_*\", \"wall\"]"), "{other}");
+    assert!(named("\nwall", "floor").unwrap().contains("\"floor\"]"));
+}
+
+#[test]
+fn names_without_references_are_renamed_where_they_are_declared() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/studies");
+    let text = std::fs::read_to_string(folder.join("strut_tolerances.toml")).unwrap();
+    let groups = "\n[calibrate.groups]\nrods = { variables = [\"B_x\"], within = 0.1 }\n";
+    assert_eq!(
+        Document::new(groups).renameable_at(after(groups, "\nro")).unwrap().section,
+        "calibrate.groups"
+    );
+    let at = after(&text, "[tolerance.correlations]\n");
+    let found = Document::new(&text).renameable_at(at).unwrap();
+    assert_eq!(found.section, "tolerance.correlations");
+    let other = renamed(&text, at, "zz9", Some(&folder)).unwrap();
+    assert!(other.contains("[tolerance.correlations]\nzz9 = "), "{other}");
+}
+
+#[test]
 fn every_entry_of_every_model_can_be_renamed_and_back() {
     let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models");
     let mut files: Vec<PathBuf> = Vec::new();
@@ -217,6 +279,16 @@ time = { end = 1.0, steps = 2 }
     assert!(why.contains("mirror image of `left_tip`"), "{why}");
     let why = renamed(text, after(text, "points.left_t"), "end", None).unwrap_err();
     assert!(why.contains("no word of a side"), "{why}");
+    // The text does not name these images.
+    let why = renamed(text, after(text, "\"left_B"), "tip", None).unwrap_err();
+    assert_eq!(why, "`tip` has no word of a side, so the mirror image `right_B` of `left_B` would be lost");
+    let text = text.replace("left_B", "B").replace("to = \"right_tip\"", "to = \"P\"")
+        + "points.P = { body = \"ground\", at = [0, 0, 50] }\n";
+    let why = renamed(&text, after(&text, "[0, 100, 0], B"), "left_rack", None).unwrap_err();
+    assert_eq!(why, "`left_rack` has a word of a side, so it would have a mirror image `right_rack`");
+    // Another word of the same side.
+    let other = renamed(&text, after(&text, "{ left_A"), "left-pin", None).unwrap();
+    assert!(other.contains("at = \"left-pin\""), "{other}");
 }
 
 #[test]

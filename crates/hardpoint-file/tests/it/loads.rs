@@ -620,3 +620,36 @@ steps = 200
     assert!((of(0) - closed(1.0)).abs() <= SAME * closed(1.0).abs());
     assert!((of(1) - first).abs() <= SAME * first.abs());
 }
+
+/// A rod carries along its line, in whatever direction that is.
+#[test]
+fn the_axial_force_of_a_rod_is_along_its_line() {
+    let text = r#"
+name = "slider-crank with a rod"
+units = { length = "mm", angle = "deg" }
+hardpoints = { O = [0, 0, 0], A = [50, 0, 0], B = [200, 30, 0] }
+bodies = { crank = {}, slider = {} }
+joints.pivot = { type = "revolute", bodies = ["ground", "crank"], at = "O", axis = "z" }
+joints.guide = { type = "translational", bodies = ["ground", "slider"], at = "B", axis = "x" }
+joints.rod = { type = "rod", bodies = ["crank", "slider"], at = ["A", "B"] }
+drivers.motor = { joint = "pivot", law = "40*t" }
+forces.push = { type = "force", at = { body = "slider", at = "B" }, force = 100, along = "-x" }
+points = { A = { body = "crank", at = "A" }, B = { body = "slider", at = "B" } }
+time = { at = [0, 1, 2] }
+[measures]
+axial = { type = "reaction", joint = "rod", part = "axial" }
+radial = { type = "reaction", joint = "rod", part = "radial" }
+pulled = { type = "reaction", joint = "rod", part = "axial", on = "crank" }
+"#;
+    let model = file(text).model;
+    let solution = Analysis::new(&model).unwrap().run();
+    for k in 0..3 {
+        let found = |name: &str| solution.measured.value(k, solution.measured.index(name).unwrap())[0];
+        let [dx, dy] = ["x", "y"].map(|c| found(&format!("B.{c}")) - found(&format!("A.{c}")));
+        // The rod pushes the slider against 100 N along x.
+        let expected = 100.0 * dx.hypot(dy) / dx;
+        assert!((found("axial") - expected).abs() < 1e-10, "{k}: {} {expected}", found("axial"));
+        assert!((found("pulled") + expected).abs() < 1e-10, "{k}: {}", found("pulled"));
+        assert!(found("radial").abs() < 1e-6, "{k}: {}", found("radial"));
+    }
+}

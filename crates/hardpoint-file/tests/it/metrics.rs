@@ -430,3 +430,73 @@ fn round_off_does_not_limit_the_range_of_linear_measures() {
     let bends = reach(&gallery("slider_crank"), "stroke", "J1_x").unwrap();
     assert!((0.01..0.1).contains(&bends), "{bends}");
 }
+
+/// Metrics over an abscissa at the places where it turns or rests: `A.y` depends on the design, `q` does not.
+const TURNING: &str = r#"
+name = "turning"
+units = { length = "mm", angle = "deg" }
+parameters = { a = { value = 100, unit = "length" } }
+hardpoints = { O = [0, 0, 0], A = ["a", 0, 0] }
+bodies = { crank = {} }
+joints.pivot = { type = "revolute", bodies = ["ground", "crank"], at = "O", axis = "z" }
+drivers.motor = { joint = "pivot", law = LAW }
+points.A = { body = "crank", at = "A" }
+measures.q = { type = "coordinate", joint = "pivot" }
+metrics.high = { of = "A.x", over = "A.y", take = "value", at = 86.60254037844386 }
+metrics.low = { of = "A.x", over = "A.y", take = "value", at = -86.60254037844386 }
+metrics.window = { of = "A.x", over = "A.y", take = "min", window = [-86.60254037844386, 86.60254037844386] }
+metrics.points = { of = "A.x", over = "A.y", take = "rms_at_points", target = [[-86.60254037844386, 0], [86.60254037844386, 0]] }
+metrics.slope = { of = "A.x", over = "A.y", take = "slope", at = 86.60254037844386 }
+metrics.turn = { of = "A.x", over = "q", take = "value", at = 60 }
+metrics.rate = { of = "A.x", over = "q", take = "slope", at = 60 }
+time = { end = 1.0, steps = STEPS }
+"#;
+
+#[test]
+fn metrics_where_the_abscissa_turns_are_those_of_the_curve() {
+    let (sine, root) = (0.75_f64.sqrt(), 3.0_f64.sqrt());
+    // x = sqrt(a^2 - y^2): value, and derivative by a at constant y
+    let at_end = (0.05, 2.0);
+    let expected = [
+        ("high", at_end),
+        ("low", at_end),
+        ("window", at_end),
+        ("points", at_end),
+        // dx/dy = -y / x; its derivative would need derivatives of the motion that are not solved.
+        ("slope", (-root, f64::NAN)),
+        ("turn", (0.05, 0.5)),
+        ("rate", (-0.1 * sine, -sine)),
+    ];
+    for (law, steps) in [
+        ("\"60*sin(2*pi*t)\"", 8),
+        ("\"60*sin(2*pi*t)\"", 40),
+        ("\"60*sin(2*pi*t)\"", 7),
+        ("\"-60*cos(pi*t)\"", 20),
+        ("{ type = \"smooth_step\", from = -60, to = 60, start = 0, end = 1 }", 33),
+    ] {
+        let file = parsed(&TURNING.replace("LAW", law).replace("STEPS", &steps.to_string()));
+        let solution = Analysis::new(&file.model).unwrap().run();
+        let found = metrics(&file.model, &solution);
+        for (name, (value, by_a)) in expected {
+            let metric = &found[file.model.metrics.iter().position(|m| m.name == name).unwrap()];
+            // The polynomials of an abscissa that rests with its acceleration are less accurate.
+            let tolerance = if law.contains("smooth") { 1e-5 } else { 1e-9 };
+            let at = || format!("{name} of {law} with {steps} steps: {metric:?}");
+            assert!(metric.value.is_some_and(|found| (found - value).abs() <= tolerance), "{}", at());
+            let apart = (metric.d[0] - by_a).abs();
+            // The ends of the window are the turns: a larger crank reaches the end, a smaller one turns before it.
+            let either = name == "window" && (metric.d[0] - 0.5).abs() <= tolerance;
+            assert!(apart <= tolerance || either || metric.d[0].is_nan() && by_a.is_nan(), "{}", at());
+            assert!(metric.time.is_none_or(|t| (0.0..=1.0).contains(&t)), "{}", at());
+        }
+    }
+}
+
+#[test]
+fn where_a_curve_is_vertical_its_value_has_no_derivative() {
+    let text = TURNING.replace("LAW", "\"180*t\"").replace("STEPS", "20").replace("86.60254037844386", "100");
+    let file = parsed(&text);
+    let found = metrics(&file.model, &Analysis::new(&file.model).unwrap().run());
+    assert!(found[0].value.is_some_and(|x| x.abs() < 1e-9) && found[0].d[0].is_nan(), "{:?}", found[0]);
+    assert!(found[4].value.is_none(), "{:?}", found[4]);
+}

@@ -208,6 +208,7 @@ fn data_files() {
     refused("file_without_that_column", &law(", columns = [1, 3]"), rows);
     refused("file_with_one_column_named", &law(", columns = \"travel\""), rows);
     refused("file_with_column_zero", &law(", columns = [0, 1]"), rows);
+    refused("file_in_milliseconds", &law(""), "time [ms], travel\n0, 0\n1000, 5\n");
     refused("file_of_one_row", &law(""), "0, 0\n");
     refused(
         "columns_without_file",
@@ -243,6 +244,11 @@ fn a_data_file_means_the_same_however_it_is_written() {
         (", columns = [2, 1]", "0, 0\n5, 1\n2, 3\n"),
         (", columns = [\"time\", \"travel\"]", "\"travel\", v, \"time\"\n0, 9, 0\n5e0, 9, 1\n2, 9, 3.0\n"),
         (", columns = [\"time\", 1]", "travel, time\n0, 0\n5, 1\n2, 3\n"),
+        ("", "time [s], travel [cm]\n0, 0\n1, 0.5\n3, 0.2\n"),
+        (
+            ", columns = [\"time\", \"travel\"]",
+            "travel [mm], v [km/h], time [s]\n0, 9, 0\n5, 9, 1\n2, 9, 3\n",
+        ),
         (", spline = \"cubic\", ends = \"clamped\", start_speed = 0", "0, 0\n1, 5\n3, 2\n"),
     ] {
         let model = with_file(&law(rest), &[("travel.csv", text)]).unwrap_or_else(|e| panic!("{e}"));

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use hardpoint::model::Model;
+use hardpoint::model::{BodyId, Model};
 use hardpoint::motion::StopKind;
 use hardpoint::run::{MetricValue, metrics};
 use hardpoint::space::Vec3;
@@ -729,5 +729,138 @@ fn metrics_are_those_of_the_curve_in_any_number_of_steps() {
                 }
             }
         }
+    }
+}
+
+/// Mechanisms with a constraint more than they need, which keeps them where those of the others become dependent.
+const HELD_BY_REDUNDANT: [(&str, &str); 3] = [
+    (
+        "a drag link with two couplers",
+        r#"
+hardpoints = { A = [0, 0, 0], D = [20, 0, 0], B = [32.418138352088384, 50.48825908847379, 0], C = [-16.67145957394343, 40.990292176521905, 0] }
+bodies = { k = {}, one = {}, r = {}, two = {} }
+[joints]
+A = { type = "revolute", bodies = ["ground", "k"], at = "A", axis = "z" }
+B = { type = "revolute", bodies = ["k", "one"], at = "B", axis = "z" }
+C = { type = "revolute", bodies = ["one", "r"], at = "C", axis = "z" }
+D = { type = "revolute", bodies = ["ground", "r"], at = "D", axis = "z" }
+B_two = { type = "revolute", bodies = ["k", "two"], at = "B", axis = "z" }
+C_two = { type = "revolute", bodies = ["two", "r"], at = "C", axis = "z" }
+"#,
+    ),
+    (
+        "an elliptic trammel with a crank",
+        r#"
+hardpoints = { A = [0, 0, 0], M = [40.95760221444959, 28.678821817552304, 0], P = [81.91520442889917, 0, 0], Q = [0, 57.35764363510461, 0] }
+bodies = { k = {}, rod = {} }
+[joints]
+A = { type = "revolute", bodies = ["ground", "k"], at = "A", axis = "z" }
+M = { type = "revolute", bodies = ["k", "rod"], at = "M", axis = "z" }
+P = { type = "inline", bodies = ["ground", "rod"], at = "P", axis = "x" }
+Q = { type = "inline", bodies = ["ground", "rod"], at = "Q", axis = "y" }
+"#,
+    ),
+    (
+        "three parallel cranks",
+        r#"
+hardpoints = { A = [0, 0, 0], B = [100, 0, 0], C = [60, -50, 0], a = [20, 10, 0], b = [120, 10, 0], c = [80, -40, 0] }
+bodies = { k = {}, second = {}, third = {}, rod = {} }
+[joints]
+A = { type = "revolute", bodies = ["ground", "k"], at = "A", axis = "z" }
+B = { type = "revolute", bodies = ["ground", "second"], at = "B", axis = "z" }
+C = { type = "revolute", bodies = ["ground", "third"], at = "C", axis = "z" }
+a = { type = "revolute", bodies = ["k", "rod"], at = "a", axis = "z" }
+b = { type = "revolute", bodies = ["second", "rod"], at = "b", axis = "z" }
+c = { type = "revolute", bodies = ["third", "rod"], at = "c", axis = "z" }
+"#,
+    ),
+];
+
+#[test]
+fn mechanisms_that_a_redundant_constraint_holds_turn_as_often_as_they_are_driven() {
+    for (name, text) in HELD_BY_REDUNDANT {
+        let head = "name = \"held\"\nunits = { length = \"mm\", angle = \"deg\" }\n";
+        let tail = "[drivers]\nm = { joint = \"A\", law = \"360*t\" }\n[time]\nend = 3\nsteps = 100\n";
+        let model = model(&format!("{head}{text}{tail}"));
+        let of = |formulation| {
+            let run = Run::new().without_sensitivities();
+            Analysis::with(&model, formulation).unwrap_or_else(|e| panic!("{name}: {e}")).solve(run)
+        };
+        let relative = of(Formulation::Relative);
+        assert!(relative.stop.is_none(), "{name}: {:?}", relative.stop);
+        let steps = 0..relative.motion.len();
+        if name == "three parallel cranks" {
+            // The rod does not turn. With every joint cut, its block does not have the rows of the third crank.
+            for k in steps {
+                let turned = relative.body(k, BodyId(4)).rotation.cols[0] - Vec3::new(1.0, 0.0, 0.0);
+                assert!(turned.norm() < 1e-12, "{name} at step {k}: {turned:?}");
+            }
+            continue;
+        }
+        let absolute = of(Formulation::Absolute);
+        assert!(absolute.stop.is_none(), "{name}: {:?}", absolute.stop);
+        for k in steps {
+            for b in 0..model.bodies.len() {
+                let [one, other] = [&relative, &absolute].map(|solution| solution.body(k, BodyId(b)).r);
+                assert!((one - other).norm() < 1e-12, "{name} at step {k}: {one:?} {other:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_stage_moves_wherever_its_joints_coincide() {
+    for place in ["[5.1, 3.3, 7.7]", "[0, 0, 0]", "[5, 0, 0]", "[1000.3, -7.77, 0.1]"] {
+        let joint = |axis: &str| {
+            format!(
+                "{axis} = {{ type = \"travel\", bodies = [\"ground\", \"k\"], at = \"B\", axis = \"{axis}\" }}\n"
+            )
+        };
+        let text = format!(
+            "name = \"stage\"\nunits = {{ length = \"mm\", angle = \"deg\" }}\nhardpoints = {{ B = {place} }}\n\
+             bodies = {{ k = {{}} }}\n[joints]\nO = {{ type = \"orientation\", bodies = [\"ground\", \"k\"] }}\n{}{}{}\
+             [drivers]\nx = {{ joint = \"x\", law = \"10*t\" }}\ny = {{ joint = \"y\", law = \"20*t\" }}\n\
+             z = {{ joint = \"z\", law = \"-30*t\" }}\n[time]\nat = [0, 1]\n",
+            joint("x"),
+            joint("y"),
+            joint("z")
+        );
+        let model = model(&text);
+        let solution = run(&model, vec![0.0, 1.0]);
+        assert!(solution.stop.is_none(), "{place}: {:?}", solution.stop);
+        let [before, after] = [0, 1].map(|k| solution.body(k, BodyId(1)).r);
+        let moved = after - before - Vec3::new(0.01, 0.02, -0.03);
+        assert!(moved.norm() < 1e-15, "{place}: {moved:?}");
+    }
+}
+
+#[test]
+fn a_law_with_a_branch_that_is_undefined_elsewhere_is_followed() {
+    for law in ["-25*if(t<0.3,0,(t-0.3)^2.5)", "if(t >= 0.3, sqrt(t - 0.3)*(t - 0.3)^2, 0)"] {
+        let text = format!(
+            "name = \"slide\"\nunits = {{ length = \"mm\", angle = \"deg\" }}\nbodies = {{ s = {{}} }}\n\
+             joints.j = {{ type = \"translational\", bodies = [\"ground\", \"s\"], at = [0, 0, 0], axis = \"x\" }}\n\
+             drivers.d = {{ joint = \"j\", law = \"{law}\" }}\n[time]\nend = 1\nsteps = 7\n"
+        );
+        let model = model(&text);
+        let solution = run(&model, model.times.clone());
+        assert!(solution.stop.is_none(), "{law}: {:?}", solution.stop);
+    }
+}
+
+/// A motion that ends early has no metrics of its whole curve, for any output times.
+#[test]
+fn a_motion_that_ends_early_has_no_extremum() {
+    for steps in [3, 10, 50] {
+        let text = four_bar_text([3.0, 1.2, 3.5, 5.0], 60.0, "6*t", 1.0)
+            .replace("steps = 10", &format!("steps = {steps}"))
+            + "\n[metrics]\nmost = { of = \"rocker\", take = \"max\" }\n\
+               change = { of = \"rocker\", take = \"change\" }\n\
+               early = { of = \"rocker\", over = \"crank\", take = \"value\", at = 0 }\n";
+        let file = model(&text);
+        let solution = Analysis::new(&file).unwrap().run();
+        assert!(solution.stop.is_some());
+        let found: Vec<Option<f64>> = metrics(&file, &solution).into_iter().map(|m| m.value).collect();
+        assert!(found[0].is_none() && found[1].is_none() && found[2].is_some(), "{steps}: {found:?}");
     }
 }

@@ -627,3 +627,15 @@ fn posterior_intervals_cover_hidden_stewart_platforms() {
     }
     assert_covered("stewart with priors", n, (errors, chis));
 }
+
+#[test]
+fn a_group_of_variables_with_own_priors_adds_no_degrees_of_freedom() {
+    let own = linear_priors(1.0).replace("[calibrate.groups.pair]", "b = 0.5\n[calibrate.groups.pair]");
+    for (priors, independent) in [(linear_priors(1.0), 3), (own, 3)] {
+        let model = linear("mm", 1.0, ["a", "b", "c"], &priors);
+        let measured = linear_readings(&model);
+        let found = fit(&model, &measured);
+        // n readings and p independent priors determine three variables.
+        assert_eq!(found.certainty.freedom, measured.readings.len() + independent - 3, "{priors}");
+    }
+}

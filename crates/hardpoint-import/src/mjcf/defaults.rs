@@ -13,6 +13,8 @@ use crate::turn::{from_z_and_x, none, sequence};
 use crate::xml;
 use crate::xml::exactly;
 
+/// Attributes for orientations; those other than `quat` come first, since they take precedence.
+pub(super) const NOTATIONS: [&str; 5] = ["axisangle", "xyaxes", "zaxis", "euler", "quat"];
 /// Maximum number of attributes in all default classes.
 const MOST_DEFAULTS: usize = 100_000;
 
@@ -105,6 +107,7 @@ impl<'d> Reader<'d, '_> {
             None => self.classes.get("main").cloned().unwrap_or_default(),
         };
         let inner = self.contents((text, node), 0);
+        self.report_repeated((text, node), &inner, &DEFAULTS.map(|(kind, _)| kind));
         for (text, element) in inner.iter().filter(|(_, n)| !n.has_tag_name("default")) {
             if let Some((_, known)) = DEFAULTS.iter().find(|(kind, _)| element.has_tag_name(*kind)) {
                 xml::unknown(*text, *element, name, *known, self.notes);
@@ -177,8 +180,14 @@ impl<'d> Reader<'d, '_> {
             none()
         };
         // The notation of the element takes precedence over that of its class.
-        const NOTATIONS: [&str; 5] = ["axisangle", "xyaxes", "zaxis", "euler", "quat"];
-        let own = NOTATIONS.into_iter().find(|key| node.has_attribute(*key));
+        let mut of_element = NOTATIONS.into_iter().filter(|key| node.has_attribute(*key));
+        let own = of_element.next();
+        if let Some((first, second)) = own.zip(of_element.next()) {
+            let at = xml::attribute_at(text, node, second);
+            let message =
+                format!("`{}` has two orientations: `{first}` and `{second}`", node.tag_name().name());
+            self.notes.problem_with("HP0804", at, message, "remove all but one of them");
+        }
         let notation =
             own.or_else(|| NOTATIONS.into_iter().find(|key| self.attribute(element, key, class).is_some()));
         match notation {

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use hardpoint::space::{Mat3, Pose, Vec3};
 
+use super::defaults::NOTATIONS;
 use super::{Element, Reader, TreePosition};
 use crate::markers::ElementSource;
 use crate::mechanism::GROUND;
@@ -151,6 +152,8 @@ impl<'d> Reader<'d, '_> {
             }
         }
         let mut is_read = node.has_attribute("gravity");
+        let contents = self.contents(element, 0);
+        self.report_repeated(element, &contents, &["flag"]);
         for flag in xml::named(node, "flag") {
             xml::unknown(text, flag, "", FLAG, self.notes);
             for name in EFFECTIVE_FLAGS {
@@ -188,6 +191,14 @@ impl<'d> Reader<'d, '_> {
         let [mass] = self.numbers::<1>(element, "mass", None).unwrap_or_default();
         let diagonal = self.numbers::<3>(element, "diaginertia", None);
         let full = self.numbers::<6>(element, "fullinertia", None);
+        // MuJoCo reports these conflicts, but none with `quat`.
+        let others = NOTATIONS.into_iter().filter(|key| *key != "quat");
+        let others = others.chain(diagonal.filter(|d| d.iter().any(|x| *x != 0.0)).map(|_| "diaginertia"));
+        for key in others.filter(|key| full.is_some() && node.has_attribute(*key)) {
+            let at = xml::attribute_at(text, node, key);
+            let message = format!("`inertial` has `fullinertia` and `{key}`, which exclude each other");
+            self.notes.problem_with("HP0804", at, message, "remove one of them");
+        }
         let [xx, yy, zz, xy, xz, yz] = full.unwrap_or_else(|| {
             let [x, y, z] = diagonal.unwrap_or_default();
             [x, y, z, 0.0, 0.0, 0.0]

@@ -223,7 +223,8 @@ impl<'d> Reader<'d, '_> {
 
     /// Adds springs and dampers of a joint.
     fn dynamics(&mut self, joint: Node<'d, 'd>, text: usize, name: &str, coordinate: Option<Coordinate>) {
-        for dynamics in children(joint).flat_map(|axis| named(axis, "dynamics")) {
+        let axes = ["axis", "axis2"].into_iter().filter_map(|key| child(joint, key));
+        for dynamics in axes.filter_map(|axis| child(axis, "dynamics")) {
             let at = xml::at(text, dynamics);
             let [stiffness, damping, free, friction] =
                 ["spring_stiffness", "damping", "spring_reference", "friction"].map(|key| {
@@ -253,10 +254,8 @@ impl<'d> Reader<'d, '_> {
             let n = child(node, key)?;
             exactly::<1>(n.text().unwrap_or_default(), key, xml::at(text, n), reader.notes).map(|[x]| x)
         };
-        for mimic in children(joint)
-            .filter(|c| ["axis", "axis2"].contains(&c.tag_name().name()))
-            .flat_map(|a| named(a, "mimic"))
-        {
+        let axes = ["axis", "axis2"].into_iter().filter_map(|key| child(joint, key));
+        for mimic in axes.filter_map(|axis| child(axis, "mimic")) {
             let other = mimic.attribute("joint").unwrap_or_default();
             let factor = number(self, mimic, "multiplier").unwrap_or(1.0);
             let constant = number(self, mimic, "offset").unwrap_or(0.0)

@@ -14,7 +14,7 @@ const SAME: f64 = 1e-9;
 
 fn read_with(name: &str, text: &str, closings: &[&str]) -> (ImportedModel, ModelFile) {
     let closings: Vec<Closing> = closings.iter().map(|c| c.parse().unwrap()).collect();
-    let options = Options { format: None, closings };
+    let options = Options { closings, ..Options::default() };
     let imported = hardpoint_import::import_with(&options, text.as_bytes(), name, &|_| None)
         .unwrap_or_else(|e| panic!("{name}:\n{e}"));
     assert!(imported.fault.is_none(), "{name}: {}\n{}", imported.fault.unwrap(), imported.text);
@@ -336,7 +336,7 @@ fn closings_are_parsed() {
     for wrong in ["a", "=b", "a=", "a=b:x", "a@1,2=b", "a@1,2,inf=b", ""] {
         assert!(closing(wrong).unwrap_err().contains("A=B"), "{wrong}");
     }
-    let options = Options { format: None, closings: vec!["tip=nowhere".parse().unwrap()] };
+    let options = Options { closings: vec!["tip=nowhere".parse().unwrap()], ..Options::default() };
     let text = FOUR_BAR.replace("FRAMES", "").replace("CLOSED", "");
     let problems = hardpoint_import::import_with(&options, text.as_bytes(), "r.urdf", &|_| None).unwrap_err();
     assert!(
@@ -399,8 +399,9 @@ fn masses_come_along_in_the_global_axes() {
         <joint name="j" type="revolute"><parent>world</parent><child>a</child><axis><xyz>0 1 0</xyz></axis></joint></model></sdf>"#;
     let (imported, _) = read("m.sdf", sdf);
     is(&mass_of(&imported.text), &wanted);
+    // MJCF has no orientation beside the matrix, which is turned here: Rx(90) e = x, z, -y.
     let mjcf = r#"<mujoco><compiler angle="radian"/><worldbody><body name="a" pos="1 0 0" euler="0 0 1.5707963267948966"><joint axis="0 1 0"/>
-        <inertial pos="0.1 0.2 0.3" euler="1.5707963267948966 0 0" mass="2" fullinertia="0.3 0.4 0.5 0.01 0.02 0.03"/><geom size="9"/></body></worldbody></mujoco>"#;
+        <inertial pos="0.1 0.2 0.3" mass="2" fullinertia="0.3 0.5 0.4 -0.02 0.01 -0.03"/><geom size="9"/></body></worldbody></mujoco>"#;
     let (imported, _) = read("m.xml", mjcf);
     is(&mass_of(&imported.text), &wanted);
     // Masses of geoms: a ball of 0.1 m at x = 0.5 and one of half the density at x = -0.25.

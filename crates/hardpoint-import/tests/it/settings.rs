@@ -15,9 +15,13 @@ const ASSEMBLED: f64 = 1e-9;
 
 fn import_with(name: &str, text: &str, closings: &[&str]) -> ImportedModel {
     let closings: Vec<Closing> = closings.iter().map(|c| c.parse().unwrap()).collect();
-    let imported =
-        hardpoint_import::import_with(&Options { format: None, closings }, text.as_bytes(), name, &|_| None)
-            .unwrap_or_else(|e| panic!("{name}:\n{e}\n{text}"));
+    let imported = hardpoint_import::import_with(
+        &Options { closings, ..Options::default() },
+        text.as_bytes(),
+        name,
+        &|_| None,
+    )
+    .unwrap_or_else(|e| panic!("{name}:\n{e}\n{text}"));
     assert!(imported.fault.is_none(), "{}\n{}", imported.fault.unwrap(), imported.text);
     imported
 }
@@ -826,5 +830,98 @@ fn forces_of_adams_without_equivalent_are_refused() {
             "{}",
             imported.report
         );
+    }
+}
+
+/// Crank of Adams with a Hooke joint, whose pins are x of marker 31 and y of marker 22.
+fn hooke(angle: &str) -> String {
+    format!(
+        "hooke\nUNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=MM, TIME=SECOND\nPART/1, GROUND\nMARKER/11, PART=1\n\
+         MARKER/12, PART=1, QP=0,0,100\nPART/2\nMARKER/21, PART=2\nMARKER/22, PART=2, QP=0,0,50\nPART/3\n\
+         MARKER/31, PART=3, QP=0,0,50, REULER={angle},0,0\nMARKER/32, PART=3, QP=0,0,100\nJOINT/1, REVOLUTE, I=21, J=11\n\
+         JOINT/2, HOOKE, I=31, J=22\nJOINT/3, CYLINDRICAL, I=32, J=12\nMOTION/1, JOINT=1, ROTATIONAL, FUNCTION=30D*TIME\nEND\n"
+    )
+}
+
+#[test]
+fn a_cross_of_adams_has_the_pins_that_the_source_names() {
+    let exact = import("h.adm", &hooke("0D"));
+    assert!(entries(&exact, ElementOutcome::Taken).contains(&("JOINT", "JOINT_2")), "{}", exact.report);
+    // Pins that are parallel, or nearly so. Other axes of the markers would be perpendicular.
+    for angle in ["90D", "89.9999D"] {
+        let parallel = import("h.adm", &hooke(angle));
+        assert_eq!(
+            entries(&parallel, ElementOutcome::Refused),
+            [("JOINT", "JOINT_2")],
+            "{}",
+            parallel.report
+        );
+        assert!(parallel.report.to_string().contains("its two axes are parallel"), "{}", parallel.report);
+    }
+    let turned = import("h.adm", &hooke("30D"));
+    assert!(
+        entries(&turned, ElementOutcome::Approximated).contains(&("JOINT", "JOINT_2")),
+        "{}",
+        turned.report
+    );
+}
+
+#[test]
+fn splines_of_adams_are_approximated_and_constraints_without_equivalent_are_named() {
+    let driven = "SPLINE/5, X=0,0.5,1,1.5,2, Y=0,10,-10,20,0\nMOTION/1, JOINT=1, ROTATIONAL, FUNCTION=AKISPL(TIME,0,5)*1D\n";
+    let imported = import("p.adm", &SPRUNG.replace("END\n", &format!("{driven}END\n")));
+    // Akima's spline is at 8.281 deg after 0.25 s, the natural cubic one at 9.6875 deg.
+    assert_eq!(
+        entries(&imported, ElementOutcome::Approximated),
+        [("MOTION", "MOTION_1")],
+        "{}",
+        imported.report
+    );
+    for (statement, reason) in [
+        ("GCON/7, FUNCTION=DX(22,10)", "a constraint by an expression has no equivalent"),
+        ("UCON/7, FUNCTION=USER(1)\\", "a constraint by a subroutine has no equivalent"),
+        ("PTCV/7, MARKER=22, CURVE=1", "a point on a curve has no equivalent"),
+    ] {
+        let report = import("p.adm", &SPRUNG.replace("END\n", &format!("{driven}{statement}\nEND\n"))).report;
+        let report = report.to_string();
+        assert!(report.contains(reason) && !report.contains("a driver fixes the motion"), "{report}");
+    }
+}
+
+#[test]
+fn lines_after_the_end_of_a_dataset_of_adams_are_not_read() {
+    let whole = import("p.adm", SPRUNG);
+    let longer = import("p.adm", &format!("{SPRUNG}! remark\nMARKER/23, PART=2, QP=0,1,0\nEND\n"));
+    assert_eq!(longer.text, whole.text);
+    let refused = longer.report.of(ElementOutcome::Refused).last().unwrap();
+    assert_eq!((refused.kind.as_str(), refused.place.as_ref().unwrap().line), ("END", 18));
+    assert!(refused.why.contains("it is not read"), "{refused}");
+    // A title may be missing, or be a statement.
+    let untitled = SPRUNG.split_once('\n').unwrap().1;
+    assert_eq!(import("p.adm", untitled).report.of(ElementOutcome::NotUnderstood).count(), 0);
+}
+
+#[test]
+fn repeated_elements_of_urdf_and_sdformat_are_reported_and_not_read() {
+    let urdf = r#"<robot name="r"><link name="a"/><link name="b"><inertial><mass value="1"/><mass value="2"/></inertial></link>
+        <joint name="j" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/><axis xyz="1 0 0"/>
+        <limit lower="-1" upper="1" effort="1" velocity="1"/><origin xyz="1 0 0"/><origin xyz="2 0 0"/></joint></robot>"#;
+    let sdf = r#"<sdf version="1.7"><model name="m"><pose>0 0 1 0 0 0</pose><pose>0 0 2 0 0 0</pose><link name="A"/>
+        <link name="B"><pose>1 0 0 0 0 0</pose></link><joint name="j" type="revolute"><parent>A</parent><child>B</child><child>A</child>
+        <axis><xyz>0 0 1</xyz><xyz>0 1 0</xyz><dynamics><damping>1</damping></dynamics><dynamics><damping>2</damping></dynamics></axis>
+        </joint></model></sdf>"#;
+    for (name, text, expected) in [
+        ("r.urdf", urdf, &[("axis", "j"), ("mass", "b"), ("origin", "j")][..]),
+        ("m.sdf", sdf, &[("child", "j"), ("dynamics", "j"), ("pose", "m"), ("xyz", "j")]),
+    ] {
+        let imported = import(name, text);
+        let mut found = entries(&imported, ElementOutcome::Refused);
+        found.sort_unstable();
+        assert_eq!(found, expected, "{}", imported.report);
+        let file = crate::model(&imported);
+        let joint = file.model.named_joints().find(|(_, j)| j.name == "j").unwrap().1;
+        assert!((joint.frames[0].cols[2].z.abs() - 1.0).abs() < ASSEMBLED, "{}", imported.text);
+        let dampers = imported.text.matches("damping =").count();
+        assert_eq!(dampers, usize::from(name == "m.sdf"), "{}", imported.text);
     }
 }

@@ -213,6 +213,8 @@ fn in_adams() {
             ("GEAR/1,", "GEAR/1, PHASE = 3,", "PHASE"),
             ("COUPLER/1,", "COUPLER/1, PHASE = 3,", "PHASE"),
             ("GEAR/1,", "LINKAGE/1, I = 1, J = 2\nGEAR/1,", "LINKAGE"),
+            ("GEAR/1,", "GEAR 2, JOINTS = 1, 2\nGEAR/1,", "line"),
+            ("GEAR/1,", "GEAR=2/JOINTS = 1, 2\nGEAR/1,", "line"),
         ],
     );
     let press = std::fs::read_to_string(folder().join("adams/press.adm")).unwrap();
@@ -234,6 +236,11 @@ fn in_adams() {
         &[
             ("TRANSLATION, K=3", "TRANSLATION, HHH=1, K=3", "HHH"),
             ("BUSHING/1, I=2", "BUSHING/1, III=1, I=2", "III"),
+            ("BUSHING/1, I=2", "BUSHING/1, I=2, I=1", "I"),
+            ("QP=1,0,0\n", "QP=1,0,0, QP=2,0,0\n", "QP"),
+            ("QP=1,0,0\n", "QP=1,0,0, REULER=0,0,0, ZP=1,0,1\n", "ZP"),
+            ("QG=1,0,0", "QG=1,0,0, REULER=0,0,0, EULER=0,0,1", "EULER"),
+            ("ACCGRAV/", "MOTION/1, JOINT=1, ROTATIONAL, I=2, FUNCTION=TIME\nACCGRAV/", "I"),
             ("SFORCE/1, I=2", "SFORCE/1, JJJ=1, I=2", "JJJ"),
             ("ACCGRAV/", "ACCGRAV/KKK=1, ", "KKK"),
             ("SPLINE/1, X", "SPLINE/1, FILE=f, X", "FILE"),

@@ -15,11 +15,13 @@ pub(crate) use text::table;
 use std::collections::{HashMap, HashSet};
 
 use change::direction_text;
+use hardpoint::Analysis;
 use hardpoint::Solution;
 use hardpoint::constraint::Row;
 use hardpoint::joint::{self, Quantity};
 use hardpoint::model::{
     BodyId, Coupler, Direction, Driver, GROUND, HardpointId, Joint, JointId, Model, OutputSource, VariableId,
+    Wheel,
 };
 use hardpoint::sensitivity::{self, Condition, JointDefect, admissibility_at_design, conditions_at_design};
 use hardpoint::topology::{Block, Closure, CutReason, Formulation, JointRole, RowId, Topology};
@@ -136,6 +138,8 @@ pub struct CouplerFact {
     pub relation: String,
     /// Coordinates with their factors.
     pub terms: Vec<TermFact>,
+    /// Value of the sum, in the units of the terms.
+    pub constant: f64,
 }
 
 /// Coordinate with its factor.
@@ -257,9 +261,9 @@ pub struct MeasureFact {
 
 impl Facts {
     /// Facts of an analysed mechanism; without a solution there are none over the motion.
-    pub fn new(file: &ModelFile, topology: &Topology, solution: Option<&Solution>) -> Self {
-        let (model, units) = (&file.model, file.units);
-        let in_plane = made_by_plane(file, topology);
+    pub fn new(file: &ModelFile, analysis: &Analysis<'_>, solution: Option<&Solution>) -> Self {
+        let (model, units, topology) = (&file.model, file.units, analysis.topology());
+        let in_plane = made_by_plane(file, analysis);
         Self {
             name: model.name.clone(),
             description: file.description.clone(),
@@ -275,8 +279,8 @@ impl Facts {
             couplers: couplers(model, units),
             drivers: drivers(model, units),
             blocks: blocks(model, topology, &in_plane),
-            redundant: redundant(model, topology, &in_plane),
-            redundancy: redundancy::redundancy(model, topology, file.plane.is_some()),
+            redundant: redundant(analysis, &in_plane),
+            redundancy: redundancy::redundancy(model, analysis, file.plane.is_some()),
             variables: variables(model, units, solution),
             conditions: conditions(model, units),
             measures: measures(model, units),
@@ -297,11 +301,12 @@ impl Facts {
 
 /// Redundant constraints of a planar model that only keep it in its plane: no other constraints imply them in planar
 /// coordinates.
-fn made_by_plane(file: &ModelFile, topology: &Topology) -> Vec<RowId> {
+fn made_by_plane(file: &ModelFile, analysis: &Analysis<'_>) -> Vec<RowId> {
+    let topology = analysis.topology();
     if file.plane.is_none() || topology.formulation == Formulation::Absolute {
         return Vec::new();
     }
-    let all = topology.redundancies(&file.model).into_iter();
+    let all = topology.redundancies(analysis.solved_model()).into_iter();
     all.filter(|r| r.implied_by.is_empty()).map(|r| r.row).collect()
 }
 
@@ -409,13 +414,14 @@ pub(crate) fn couplers(model: &Model, units: Units) -> Vec<CouplerFact> {
             unit: symbol(units, model.coupled(t).quantity),
         };
         let terms: Vec<TermFact> = coupler.terms.iter().map(term).collect();
-        CouplerFact { name: coupler.name.clone(), relation: relation(&terms), terms }
+        let constant = coupler.constant / first;
+        CouplerFact { name: coupler.name.clone(), relation: relation(&terms, constant), terms, constant }
     };
     model.couplers.iter().map(fact).collect()
 }
 
 /// Formatted relation: `20 R1.angle + 40 R2.angle = 0`.
-fn relation(terms: &[TermFact]) -> String {
+fn relation(terms: &[TermFact], constant: f64) -> String {
     let mut text = String::new();
     for (k, t) in terms.iter().enumerate() {
         let sign = match (k, t.coefficient < 0.0) {
@@ -428,7 +434,7 @@ fn relation(terms: &[TermFact]) -> String {
         let factor = if factor == "1" { String::new() } else { format!("{factor} ") };
         text += &format!("{sign}{factor}{}.{}", t.joint, t.coordinate);
     }
-    text + " = 0"
+    format!("{text} = {}", rounded(constant, 6))
 }
 
 /// Names of the points in the model file, the first at each location.
@@ -480,6 +486,11 @@ fn driven_text(model: &Model, joint: &Joint, points: &Points<'_>) -> String {
     });
     let relative =
         if joint.bodies[0] == GROUND { String::new() } else { format!(" relative to `{}`", body(0)) };
+    let is_its_wheel =
+        |wheel: &&Wheel| wheel.body == joint.bodies[1] && model.points[wheel.centre.0].at == joint.at[1];
+    if let Some(wheel) = model.wheels.iter().find(is_its_wheel).filter(|_| joint.kind.is_pad()) {
+        return format!("contact point of wheel `{}` along {axis}{relative}", wheel.name);
+    }
     match joint.kind.places {
         0 => format!("orientation of `{}` about {axis}{relative}", body(1)),
         1 => format!("{} along {axis}{relative}", place(1)),
@@ -521,7 +532,8 @@ fn blocks(model: &Model, topology: &Topology, in_plane: &[RowId]) -> Vec<BlockFa
     topology.blocks.iter().enumerate().map(fact).collect()
 }
 
-fn redundant(model: &Model, topology: &Topology, in_plane: &[RowId]) -> Vec<RedundantFact> {
+fn redundant(analysis: &Analysis<'_>, in_plane: &[RowId]) -> Vec<RedundantFact> {
+    let (model, topology) = (analysis.solved_model(), analysis.topology());
     let fact = |r: RowId| {
         let closure = topology.closure_of(r);
         RedundantFact {

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use hardpoint::Analysis;
 use hardpoint::joint::JointType;
 use hardpoint::model::{JointId, MeasureKind, Model};
 use hardpoint::topology::{Formulation, JointRole, Redundancy, Topology};
@@ -48,7 +49,9 @@ enum Part {
 
 /// All redundant constraints, grouped by the parts involved, in the order of the file; for a planar model without those
 /// of the plane itself.
-pub(super) fn redundancy(model: &Model, topology: &Topology, planar: bool) -> Vec<RedundancyFact> {
+pub(super) fn redundancy(model: &Model, analysis: &Analysis<'_>, planar: bool) -> Vec<RedundancyFact> {
+    // With equilibrium, a body that only forces hold has a joint more.
+    let (solved, topology) = (analysis.solved_model(), analysis.topology());
     /// Maximum number of bodies for the exact search with every joint cut: its cost is cubic in six unknowns per body.
     const MOST_BODIES: usize = 50;
     let left_out = topology.redundant().count();
@@ -57,14 +60,14 @@ pub(super) fn redundancy(model: &Model, topology: &Topology, planar: bool) -> Ve
     }
     let small = model.bodies.len() - 1 <= MOST_BODIES;
     let all_cut = small
-        .then(|| Topology::of(model, Formulation::Absolute).ok())
+        .then(|| Topology::of(solved, Formulation::Absolute).ok())
         .flatten()
         .filter(|t| t.redundant().count() == left_out);
     // In a tree with planar coordinates, a redundant constraint that no others imply is one of the plane itself.
-    let in_plane = planar.then(|| Topology::of(model, Formulation::Relative).ok()).flatten();
+    let in_plane = planar.then(|| Topology::of(solved, Formulation::Relative).ok()).flatten();
     let plan = in_plane.as_ref().or(all_cut.as_ref()).unwrap_or(topology);
     let mut groups: BTreeMap<Vec<Part>, usize> = BTreeMap::new();
-    for redundancy in plan.redundancies(model).into_iter().filter(|r| !planar || !r.implied_by.is_empty()) {
+    for redundancy in plan.redundancies(solved).into_iter().filter(|r| !planar || !r.implied_by.is_empty()) {
         *groups.entry(parts(model, plan, &redundancy)).or_default() += 1;
     }
     let mut relaxed = RelaxedModel { model: model.clone(), redundant: left_out, mobility: topology.mobility };
@@ -102,7 +105,11 @@ fn parts(model: &Model, plan: &Topology, redundancy: &Redundancy) -> Vec<Part> {
             parts.extend(around.map(|j| Part::Joint(j.0)));
         }
     }
-    parts.retain(|p| !matches!(p, Part::Joint(j) if model.joints[*j].unnamed));
+    parts.retain(|part| match part {
+        Part::Joint(j) => model.joints.get(*j).is_some_and(|joint| !joint.unnamed),
+        Part::Driver(d) => *d < model.drivers.len(),
+        Part::Coupler(_) => true,
+    });
     parts.sort_unstable();
     parts.dedup();
     parts

@@ -17,7 +17,7 @@ fn page(file: &ModelFile) -> Payload {
     let analysis = Analysis::new(&file.model).unwrap();
     let solution = analysis.run();
     let course = Course::of(&file.model, &solution);
-    let summary = Summary::new(file, analysis.topology(), &course);
+    let summary = Summary::new(file, &analysis, &course);
     let page = payload(&Request::of(file, &analysis, &course, &summary));
     assert!(html(&page).unwrap().len() > 100_000);
     page

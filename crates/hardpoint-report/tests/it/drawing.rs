@@ -28,7 +28,7 @@ pub fn page_of(file: &ModelFile) -> Payload {
     let analysis = Analysis::new(&file.model).unwrap();
     let solution = analysis.run();
     let course = Course::of(&file.model, &solution);
-    let summary = Summary::new(file, analysis.topology(), &course);
+    let summary = Summary::new(file, &analysis, &course);
     payload(&Request::of(file, &analysis, &course, &summary))
 }
 

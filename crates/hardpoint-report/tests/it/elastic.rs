@@ -29,7 +29,7 @@ fn page(file: &ModelFile) -> Payload {
     let analysis = Analysis::new(&file.model).unwrap();
     let solution = analysis.run();
     let course = Course::of(&file.model, &solution);
-    let summary = Summary::new(file, analysis.topology(), &course);
+    let summary = Summary::new(file, &analysis, &course);
     payload(&Request::of(file, &analysis, &course, &summary))
 }
 
@@ -154,7 +154,7 @@ fn a_compliance_per_a_force_of_size_zero_reports_why_it_has_no_value() {
     let notes = |file: &ModelFile| {
         let analysis = Analysis::new(&file.model).unwrap();
         let course = Course::of(&file.model, &analysis.run());
-        let summary = Summary::new(file, analysis.topology(), &course);
+        let summary = Summary::new(file, &analysis, &course);
         let found = hardpoint_report::diagnose::all(file, &summary, &course, None);
         let text = |d: &hardpoint_file::Diagnostic| format!("{} {} {}", d.code, d.message, d.notes.join(" "));
         found.iter().map(text).collect::<Vec<_>>().join("\n")
@@ -168,4 +168,43 @@ fn a_compliance_per_a_force_of_size_zero_reports_why_it_has_no_value() {
     assert_eq!(found.unit, "deg/(N*m)");
     let shown = notes(&axle("steer", &[zero]));
     assert!(shown.contains("HP0409") && shown.contains("the size of `left_align` is zero"), "{shown}");
+}
+
+/// A subframe on bushings, with both halves of a bar on it: the solved mechanism has a joint more than the file.
+#[test]
+fn redundant_constraints_on_a_body_that_only_forces_hold_are_named() {
+    let bushing = "x = 1000, y = 1000, z = 1000, about_x = 100, about_y = 100, about_z = 100 }";
+    let text = format!(
+        r#"
+name = "bar on a floating frame"
+units = {{ length = "mm", angle = "deg" }}
+hardpoints = {{ a = [0, -300, 0], b = [0, 300, 0], m = [0, 0, 0], p = [100, 200, 0], q = [100, -200, 0] }}
+bodies = {{ frame = {{}}, left = {{}}, right = {{}} }}
+[joints]
+left_hinge = {{ type = "revolute", bodies = ["frame", "left"], at = "m", axis = "y" }}
+right_hinge = {{ type = "revolute", bodies = ["frame", "right"], at = "m", axis = "y" }}
+twist = {{ type = "revolute", bodies = ["left", "right"], at = "m", axis = "y" }}
+[points]
+p = {{ body = "left", at = "p" }}
+[drivers]
+up = {{ point = "p", along = "z", law = "10*t" }}
+[forces]
+ba = {{ type = "bushing", from = {{ body = "ground", at = "a" }}, to = {{ body = "frame", at = "a" }}, {bushing}
+bb = {{ type = "bushing", from = {{ body = "ground", at = "b" }}, to = {{ body = "frame", at = "b" }}, {bushing}
+s = {{ type = "spring", from = {{ body = "ground", at = [100, -200, 200] }}, to = {{ body = "right", at = "q" }}, stiffness = 10 }}
+bar = {{ type = "torsion_spring", joint = "twist", stiffness = 12 }}
+[equilibrium]
+[time]
+end = 1
+steps = 4
+"#
+    );
+    let file = hardpoint_file::parse(&text, "bar.toml").unwrap_or_else(|e| panic!("{e}"));
+    let analysis = Analysis::new(&file.model).unwrap();
+    let solution = analysis.run();
+    assert!(solution.stop.is_none(), "{:?}", solution.stop);
+    let summary = Summary::new(&file, &analysis, &Course::of(&file.model, &solution));
+    let [redundancy] = &summary.model.redundancy[..] else { panic!("{:?}", summary.model.redundancy) };
+    assert_eq!(redundancy.count, 5);
+    assert_eq!(redundancy.joints, ["left_hinge", "right_hinge", "twist"]);
 }

@@ -160,7 +160,7 @@ fn sensitivity_file_converts_numerator_and_denominator() {
 fn solved(file: &ModelFile) -> (Analysis<'_>, Solution, Summary) {
     let analysis = Analysis::new(&file.model).unwrap();
     let solution = analysis.run();
-    let summary = Summary::new(file, analysis.topology(), &Course::of(&file.model, &solution));
+    let summary = Summary::new(file, &analysis, &Course::of(&file.model, &solution));
     (analysis, solution, summary)
 }
 
@@ -184,7 +184,7 @@ fn facts_tell_the_three_answers_apart() {
     assert_eq!(facts.counts.redundant_constraints, 3);
     // Without a solution nothing is claimed about the motion.
     let analysis = Analysis::new(&file.model).unwrap();
-    let unsolved = Facts::new(&file, analysis.topology(), None);
+    let unsolved = Facts::new(&file, &analysis, None);
     assert_eq!(unsolved.count_admissibility(VariableAdmissibility::Unknown), 3);
 }
 

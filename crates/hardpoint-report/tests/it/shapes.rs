@@ -28,7 +28,7 @@ fn page_of(file: &ModelFile) -> Payload {
     let analysis = Analysis::new(&file.model).unwrap();
     let solution = analysis.run();
     let course = Course::of(&file.model, &solution);
-    let summary = Summary::new(file, analysis.topology(), &course);
+    let summary = Summary::new(file, &analysis, &course);
     payload(&Request::of(file, &analysis, &course, &summary))
 }
 
@@ -108,7 +108,7 @@ fn a_changed_design_has_its_own_shapes_and_distances() {
     let analysis = Analysis::new(&file.model).unwrap();
     let solution = analysis.run();
     let course = Course::of(&file.model, &solution);
-    let summary = Summary::new(&file, analysis.topology(), &course);
+    let summary = Summary::new(&file, &analysis, &course);
     let moved = file.model.variables.iter().position(|v| v.name == "screw1_y").unwrap();
     let mut change = vec![0.0; file.model.variables.len()];
     // 3 mm away from the rod: it is missed.

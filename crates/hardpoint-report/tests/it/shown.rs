@@ -36,7 +36,7 @@ fn solved(file: &ModelFile) -> (Solution, Summary) {
     let analysis = Analysis::new(&file.model).unwrap();
     let solution = analysis.run();
     let course = Course::of(&file.model, &solution);
-    let summary = Summary::new(file, analysis.topology(), &course);
+    let summary = Summary::new(file, &analysis, &course);
     let page = payload(&Request::of(file, &analysis, &course, &summary));
     assert_eq!(page.margin.is_some(), summary.margin.is_some());
     (solution, summary)
@@ -134,6 +134,28 @@ fn couplers_are_written_out_in_the_users_units_and_counted() {
     assert_eq!((rack.terms[0].unit, rack.terms[1].unit), ("mm", "deg"));
     let ratio = rack.terms[1].coefficient / rack.terms[0].coefficient;
     assert!((ratio.abs() - 20.0_f64.to_radians()).abs() < 1e-12, "{ratio}");
+}
+
+#[test]
+fn the_constant_of_a_coupler_is_in_its_relation() {
+    let linear = |constant: &str| {
+        let text = FRAME.replace("arm = {}", "arm = {}, sled = {}")
+            + r#"
+joints.slide = { type = "translational", bodies = ["ground", "sled"], at = [0, 100, 0], axis = "x" }
+drivers.motor = { joint = "hinge", law = "10*t" }
+[couplers.k]
+type = "linear"
+terms = [{ joint = "slide", coefficient = 1 }, { joint = "hinge", coefficient = -2 }]
+"# + constant;
+        let file = hardpoint_file::parse(&text, "slide.toml").unwrap();
+        let (_, summary) = solved(&file);
+        summary.model.couplers[0].clone()
+    };
+    // In mm and degrees, as in the file.
+    let fact = linear("constant = 5");
+    assert_eq!((fact.relation.as_str(), fact.constant), ("slide.displacement - 2 hinge.angle = 5", 5.0));
+    assert_eq!(linear("constant = -0.25").relation, "slide.displacement - 2 hinge.angle = -0.25");
+    assert_eq!(linear("").relation, "slide.displacement - 2 hinge.angle = 0");
 }
 
 /// Three arms that rotate about y, each driven differently.

@@ -21,7 +21,7 @@ fn page(file: &ModelFile, compared: bool) -> (Payload, String) {
     let solution = analysis.run();
     assert!(solution.stop.is_none(), "{:?}", solution.stop);
     let course = Course::of(&file.model, &solution);
-    let summary = Summary::new(file, analysis.topology(), &course);
+    let summary = Summary::new(file, &analysis, &course);
     let differences = if compared { differences(file, &analysis, &solution) } else { Vec::new() };
     let request = Request { differences: &differences, ..Request::of(file, &analysis, &course, &summary) };
     let shown = RefCell::new(None);

@@ -42,7 +42,7 @@ fn changed<'f>(file: &'f ModelFile, of: &[(&str, f64)]) -> WhatIfPage<'f> {
     let analysis = Analysis::new(&file.model).unwrap();
     let today = analysis.run();
     let course = Course::of(&file.model, &today);
-    let summary = Summary::new(file, analysis.topology(), &course);
+    let summary = Summary::new(file, &analysis, &course);
     let facts = WhatIfFacts::of_today(file, analysis.topology(), &today);
     let found = what_if(&analysis, today, &change(file, of));
     let facts = facts.changed(file, analysis.topology(), &found);
@@ -239,7 +239,7 @@ fn without_a_change_it_is_the_page_of_today_with_the_ranking() {
     let analysis = Analysis::new(&file.model).unwrap();
     let today = analysis.run();
     let course = Course::of(&file.model, &today);
-    let summary = Summary::new(&file, analysis.topology(), &course);
+    let summary = Summary::new(&file, &analysis, &course);
     let of_run = payload(&Request::of(&file, &analysis, &course, &summary));
     let facts = WhatIfFacts::of_today(&file, analysis.topology(), &today);
     let page = facts.page(of_run.clone(), &[], None, &|_| true);

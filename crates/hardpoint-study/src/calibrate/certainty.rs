@@ -2,7 +2,7 @@
 
 use super::fit::{FitWorkspace, SearchResult, information};
 use super::{BoundSide, Status};
-use hardpoint_search::dot;
+use hardpoint_search::{dot, independent};
 
 /// A direction with a standard deviation of more natural steps than this (about the mechanism's size) is not reported.
 const VAGUE: f64 = 1.0;
@@ -31,7 +31,7 @@ pub struct Certainty {
     pub unidentifiable: Vec<UnidentifiableChange>,
     /// Changes that the priors determine rather than the readings.
     pub by_prior: Vec<UnidentifiableChange>,
-    /// Degrees of freedom: number of compared readings and of priors minus number of reported directions.
+    /// Degrees of freedom: number of compared readings and of independent priors minus number of reported directions.
     pub freedom: usize,
     /// Standard deviation of the residuals, relative to the given standard deviations, where 1 is expected; in SI if
     /// none are given. `None` if there are no more readings than directions.
@@ -116,7 +116,9 @@ impl FitWorkspace<'_> {
             UnidentifiableChange { direction, sigma: sigma.map(|s| s * most) }
         };
         let reported = directions.reported.len();
-        let freedom = (search.at.r.len() + search.at.priors.len()).saturating_sub(reported);
+        // The differences of a group say nothing new of members that have priors of their own.
+        let priors = independent(self.priors.a.clone()).into_iter().filter(|is_new| *is_new).count();
+        let freedom = (search.at.r.len() + priors).saturating_sub(reported);
         let rows = search.at.r.iter().zip(&search.weights);
         let of_readings = rows.map(|(r, w)| w * (r / search.scale).powi(2)).sum::<f64>();
         let chi_square = of_readings + search.at.priors.iter().map(|r| r * r).sum::<f64>();

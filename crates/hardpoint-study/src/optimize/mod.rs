@@ -60,6 +60,8 @@ const RESTING: f64 = 1e-13;
 /// Objectives with a relative difference below this are equal to round-off; the design with the smaller optimality
 /// residual is then the better one.
 const THE_SAME: f64 = 1e-12;
+/// Relative difference of objectives below which the search with the smallest optimality residual is the best one.
+const AS_GOOD: f64 = 1e-9;
 /// An optimum of another assembly or sense must be better than those of the model's own by this fraction.
 const NO_WORSE: f64 = 1e-6;
 /// A run that reduces the optimality residual to this fraction is progress, whatever its effect on the objective.
@@ -94,6 +96,8 @@ const ASTRAY: f64 = 1e4;
 const PATIENCE: usize = 20;
 /// ... which are preferred if they reduce the objective to this fraction.
 const HALVED: f64 = 0.5;
+/// Number of further iterations from goals that seem to vanish to round-off.
+const CONFIRMING: usize = 30;
 /// The first solver hands over if a step gains less than this fraction of the objective.
 const HARDLY_LESS: f64 = 1e-6;
 /// Maximum number of trials for a start that cannot be evaluated; each is half as far from the nominal design as the
@@ -332,7 +336,7 @@ fn best(searches: &[SearchResult]) -> Option<usize> {
     let least = (0..searches.len()).filter(|k| found(k).is_some()).min_by(order)?;
     let (exceeds, value) = rank(&least);
     let as_good = |k: &usize| {
-        let same = |(e, v): (bool, f64)| e == exceeds && v - value <= THE_SAME * value.abs();
+        let same = |(e, v): (bool, f64)| e == exceeds && v - value <= AS_GOOD * value.abs();
         found(k).is_some() && same(rank(k))
     };
     let residual = |k: &usize| searches[*k].optimality.residual;
@@ -417,6 +421,9 @@ fn search(
         run.go(&mut search, tell);
         search.found = Some(assess(problem, &run.best, &run.scales));
         search.optimality = run.optimality(&run.best);
+        if search.optimality.vanishes {
+            search.optimality.residual = 0.0;
+        }
         search.status = run.status(&search);
     }
     search.refused =
@@ -439,6 +446,8 @@ struct Descent<'p> {
     ran_out: bool,
     /// True if Gauss-Newton steps were idle.
     is_curved: bool,
+    /// Number of iterations at which a search ends that only confirms its result.
+    confirms_until: Option<usize>,
 }
 
 impl<'p> Descent<'p> {
@@ -453,6 +462,7 @@ impl<'p> Descent<'p> {
             best: point,
             ran_out: false,
             is_curved: false,
+            confirms_until: None,
             problem,
             memory,
         }
@@ -464,8 +474,9 @@ impl<'p> Descent<'p> {
 
     /// True if a search can end at a point.
     fn is_sharp(&self, point: &Point) -> bool {
-        let Optimality { residual, left_of_start, .. } = self.optimality(point);
-        self.violation(point) <= KEPT && residual < OPTIMAL && (residual < SHARP || left_of_start < SHARP)
+        let Optimality { residual, left_of_start, vanishes, .. } = self.optimality(point);
+        let is_flat = residual < OPTIMAL && (residual < SHARP || left_of_start < SHARP);
+        self.violation(point) <= KEPT && (is_flat || vanishes && self.confirms_until.is_none())
     }
 
     fn violation(&self, point: &Point) -> f64 {
@@ -525,6 +536,10 @@ impl<'p> Descent<'p> {
             let less = before.0 - after.0 > THE_SAME * before.0.abs() || after.1 < before.1;
             let gained = run == 0 || less || after.2 < NEARER * before.2;
             let sharp = self.is_sharp(&self.best);
+            if sharp && self.optimality(&self.best).vanishes {
+                self.confirm(search, tell);
+                return;
+            }
             idle = if gained { 0 } else { idle + 1 };
             // If there are two solvers, the other one continues when one makes no progress.
             let at_rest = idle > usize::from(squares);
@@ -533,6 +548,14 @@ impl<'p> Descent<'p> {
             }
             self.return_to_best();
         }
+    }
+
+    /// Continues from goals that seem to vanish to round-off: their gradient at the start says only roughly what that
+    /// is.
+    fn confirm(&mut self, search: &mut SearchResult, tell: &mut dyn FnMut(&Iteration)) {
+        self.return_to_best();
+        self.confirms_until = Some(search.iterations.len() + CONFIRMING);
+        self.descend(1, search, tell);
     }
 
     /// Returns to the best design.
@@ -642,7 +665,9 @@ impl<'p> Descent<'p> {
                 self.ran_out = true;
                 return;
             }
-            if self.memory.interrupted() {
+            if self.memory.interrupted()
+                || self.confirms_until.is_some_and(|end| search.iterations.len() >= end)
+            {
                 return;
             }
             let Some(at) = solver.step() else { return };

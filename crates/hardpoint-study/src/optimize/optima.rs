@@ -9,7 +9,7 @@ use super::{KEPT, Optimization, Status, is_as_good_in_own_assembly};
 const SAME: f64 = 1e-4;
 
 impl Optimization {
-    /// Distinct optima, the best first: of each the searches that ended in it, the sharpest first.
+    /// Distinct optima, the best first: of each the searches that ended in it, the best first.
     ///
     /// Searches that ended elsewhere are in none of them.
     pub fn optima(&self, model: &Model, settings: &OptimizationSettings) -> Vec<Vec<usize>> {
@@ -43,10 +43,6 @@ impl Optimization {
         });
         if let Some(own) = own {
             optima[..=own].rotate_right(1);
-        }
-        let residual = |k: &usize| self.searches[*k].optimality.residual;
-        for optimum in &mut optima {
-            optimum.sort_by(|a, b| residual(a).total_cmp(&residual(b)));
         }
         optima
     }

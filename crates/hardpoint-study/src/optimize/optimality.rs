@@ -42,7 +42,8 @@ pub enum ActiveConstraint {
 /// Optimality of a design.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Optimality {
-    /// Part of the gradient that no active constraint balances, relative to the scale of the goals: 0 at an optimum.
+    /// Part of the gradient that no active constraint balances, or what the maxima that balance it fall short of the
+    /// greatest, relative to the scale of the goals: 0 at an optimum.
     ///
     /// The scale of squares `f = r^T r` is `2 max |J_v| |r|`, so that the residual is the cosine between the misfits
     /// and their derivatives. The scale of other goals is their value, but at least a fraction of the gradient at the
@@ -52,6 +53,9 @@ pub struct Optimality {
     pub left_of_start: f64,
     /// True if all goals are squares that vanish to round-off, so that no improvement is possible.
     pub met: bool,
+    /// True if goals that are not squares vanish to round-off, as far as their gradient at the start says what that is:
+    /// an optimum if searches find nothing better from there.
+    pub(super) vanishes: bool,
     /// Active constraints, each with the decrease of the objective if it were relaxed by one SI unit (its Lagrange
     /// multiplier).
     pub binding: Vec<(ActiveConstraint, f64)>,
@@ -60,13 +64,14 @@ pub struct Optimality {
 }
 
 impl Rows {
-    /// Derivatives, by fractions of the bounds, of the rows that attain the maximum up to a fraction of their change
-    /// over the bounds.
-    fn at_peak(&self, spans: &[f64]) -> Vec<Vec<f64>> {
+    /// Rows that attain the maximum up to a fraction of their change over the bounds, each with the difference from it
+    /// and its derivatives by fractions of the bounds.
+    fn at_peak(&self, spans: &[f64]) -> Vec<(f64, Vec<f64>)> {
         let by_parts: Vec<Vec<f64>> = self.d.iter().map(|d| by_parts(d, spans)).collect();
         let steepest = by_parts.iter().flatten().fold(0.0, |most: f64, d| most.max(d.abs()));
-        let least = self.greatest() - BINDS * steepest;
-        self.values.iter().zip(by_parts).filter(|(value, _)| **value >= least).map(|(_, d)| d).collect()
+        let (greatest, least) = (self.greatest(), BINDS * steepest);
+        let short = self.values.iter().map(|value| greatest - value);
+        short.zip(by_parts).filter(|(short, _)| *short <= least).collect()
     }
 }
 
@@ -131,7 +136,7 @@ impl Optimality {
                 let [high, low] = spread.map_or([Vec::new(), Vec::new()], |s| {
                     [&s.ends[0], &s.ends[1]].map(|e| e.at_peak(&spans))
                 });
-                for (a, b) in high.iter().flat_map(|a| low.iter().map(move |b| (a, b))) {
+                for ((_, a), (_, b)) in high.iter().flat_map(|a| low.iter().map(move |b| (a, b))) {
                     push(a.iter().zip(b).map(|(a, b)| a + b).collect());
                 }
                 if spread.is_none() {
@@ -139,12 +144,15 @@ impl Optimality {
                 }
             }
         }
+        let first_peak = columns.len();
+        let mut shortfalls: Vec<f64> = Vec::new();
         for (group, (rows, _)) in groups.iter().enumerate() {
-            for d in rows.at_peak(&spans) {
+            for (short, d) in rows.at_peak(&spans) {
                 let mut column = padded(d);
                 column[n + group] = weight;
                 columns.push(column);
                 constraints.push(None);
+                shortfalls.push(short);
             }
         }
         let met = point.is_met(&spans, steepest);
@@ -157,11 +165,12 @@ impl Optimality {
             let balanced: f64 = columns.iter().zip(&multipliers).map(|(column, m)| m * column[i]).sum();
             (gradient[i] + balanced).abs()
         };
-        let left = (0..n).map(left).fold(0.0, f64::max);
+        // sum of l_i c_i: a goal can be better by this although the gradient is balanced.
+        let gap: f64 = shortfalls.iter().zip(&multipliers[first_peak..]).map(|(short, m)| short * m).sum();
+        let left = (0..n).map(left).fold(gap, f64::max);
         let vanishes =
             !point.has_only_squares() && point.goal_size() <= MET * weight && left <= FLAT * weight;
-        let (residual, left_of_start) =
-            if met || vanishes { (0.0, 0.0) } else { (left / scale, left / weight) };
+        let (residual, left_of_start) = if met { (0.0, 0.0) } else { (left / scale, left / weight) };
         let (mut binding, mut price) = (Vec::<(ActiveConstraint, f64)>::new(), 0.0);
         for (constraint, multiplier) in constraints.into_iter().zip(multipliers).filter(|(_, m)| *m != 0.0) {
             let Some((what, scale)) = constraint else { continue };
@@ -175,7 +184,7 @@ impl Optimality {
                 None => binding.push((what, multiplier / scale)),
             }
         }
-        Self { residual, left_of_start, met, binding, price }
+        Self { residual, left_of_start, met, vanishes, binding, price }
     }
 }
 

@@ -7,14 +7,12 @@ use std::cell::RefCell;
 use crate::evaluation::StudyCost;
 use crate::recent::Recent;
 use hardpoint::linalg::folded_rows;
-use hardpoint_search::{LeastSquares, Program, Sequential, dot, norm};
+use hardpoint_search::{LeastSquares, Program, Sequential, independent};
 
 use super::problem::{LimitRow, Point, Problem, Refusal, Rows};
 
 /// Minimum curvature assumed in any direction, as a fraction of the largest.
 pub(super) const FLAT: f64 = 1e-4;
-/// Equalities whose derivatives have less than this part independent of those before them are dependent.
-const DEPENDENT: f64 = 1e-9;
 /// Length of a first step without known curvature, as a fraction of the bounds.
 const FIRST_STEP: f64 = 0.1;
 
@@ -389,28 +387,6 @@ impl Solver for ScaledSequential<'_> {
 fn groups(scale: f64, point: &Point) -> impl Iterator<Item = (f64, &Rows)> {
     let linear = point.peaks.iter().map(move |rows| (scale, rows));
     linear.chain(point.extrema.iter().map(move |extremum| (scale.sqrt(), &extremum.rows)))
-}
-
-/// Returns which of some rows are independent of those before them, by orthogonalisation.
-fn independent(rows: Vec<Vec<f64>>) -> Vec<bool> {
-    let mut basis: Vec<Vec<f64>> = Vec::new();
-    let is_new = |mut row: Vec<f64>| {
-        let length = norm(&row);
-        // Once more against round-off of the first pass.
-        for _ in 0..2 {
-            for unit in &basis {
-                let along = dot(unit, &row);
-                row.iter_mut().zip(unit).for_each(|(x, u)| *x -= along * u);
-            }
-        }
-        let rest = norm(&row);
-        let is_new = rest > DEPENDENT * length;
-        if is_new {
-            basis.push(row.iter().map(|x| x / rest).collect());
-        }
-        is_new
-    };
-    rows.into_iter().map(is_new).collect()
 }
 
 /// The columns of `L^-T` for a positive definite matrix `L L^T`.

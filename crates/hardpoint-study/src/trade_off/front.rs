@@ -103,12 +103,20 @@ pub(super) struct Front<'p> {
 }
 
 impl<'p> Front<'p> {
-    /// Front between the optima of the goals, given as fractions of the bounds; `None` if they cannot be evaluated. The
-    /// derivatives at the nominal design say by how much the goals change over the bounds, or else those at the optima.
-    pub fn new(memory: &'p Memory<'p>, anchors: Vec<Vec<f64>>, nominal: Option<&State>) -> Option<Self> {
+    /// Front between the optima of the goals, given as fractions of the bounds. The derivatives at the nominal design
+    /// say by how much the goals change over the bounds, or else those at the optima.
+    ///
+    /// # Errors
+    /// Returns the goal at whose optimum not all goals and limits can be evaluated.
+    pub fn new(
+        memory: &'p Memory<'p>,
+        anchors: Vec<Vec<f64>>,
+        nominal: Option<&State>,
+    ) -> Result<Self, usize> {
         let problem = memory.problem;
-        let points = anchors.iter().map(|x| memory.at(x, |found| found.as_ref().ok().cloned()));
-        let points: Vec<_> = points.collect::<Option<_>>()?;
+        let found = |x: &Vec<f64>| memory.at(x, |found| found.as_ref().ok().cloned());
+        let points = anchors.iter().enumerate().map(|(goal, x)| found(x).ok_or(goal));
+        let points: Vec<_> = points.collect::<Result<_, _>>()?;
         let limit_scales = limit_scales(problem, &points[0]);
         let states = anchors.into_iter().zip(points);
         let states: Vec<State> =
@@ -145,7 +153,7 @@ impl<'p> Front<'p> {
         };
         let anchors = states.into_iter().enumerate().map(node).collect();
         let (sides, inside) = (Vec::new(), Vec::new());
-        Some(Self {
+        Ok(Self {
             memory,
             limit_scales,
             scale,

@@ -85,6 +85,9 @@ pub enum Outcome {
     /// The optimum of a goal, by its index, was not found, or the goal depends on no variable; the status of the
     /// search.
     NoAnchor(usize, Status),
+    /// The optimum of a goal, by its index, was found, but another goal or a limit has no derivative there: the front
+    /// has no end.
+    NoEnd(usize),
 }
 
 /// Design on a front.
@@ -179,14 +182,18 @@ pub fn trade_off(model: &Model, motions: &Motions<'_>, request: &Request, contro
             ended.store(true, std::sync::atomic::Ordering::Relaxed);
         }
     };
-    if let Some(mut front) = Front::new(&memory, anchors, nominal.as_ref()) {
-        let end = front.fill(*points, &mut report);
-        result.outcome = match end {
-            _ if memory.interrupted() => Outcome::Interrupted,
-            End::Filled => Outcome::Front,
-            End::SinglePoint => Outcome::NoConflict,
-        };
-        front.into_result(&mut result);
+    match Front::new(&memory, anchors, nominal.as_ref()) {
+        Ok(mut front) => {
+            let end = front.fill(*points, &mut report);
+            result.outcome = match end {
+                _ if memory.interrupted() => Outcome::Interrupted,
+                End::Filled => Outcome::Front,
+                End::SinglePoint => Outcome::NoConflict,
+            };
+            front.into_result(&mut result);
+        }
+        Err(_) if memory.interrupted() => {}
+        Err(goal) => result.outcome = Outcome::NoEnd(goal),
     }
     result.cost += memory.cost.take();
     result

@@ -407,6 +407,10 @@ impl<'a> Checker<'a> {
                 } else if section == Section::Bodies && *name == "ground" {
                     self.fault("HP0201", at, "the name `ground` is reserved for the fixed body")
                         .help("give this body another name");
+                } else if section == Section::Measures && Expression::is_constant(name) {
+                    let message =
+                        format!("no expression can use a measure named `{name}`: it is a constant there");
+                    self.fault("HP0201", at, message).help("give it another name");
                 }
             }
         }

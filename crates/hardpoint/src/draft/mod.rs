@@ -22,7 +22,10 @@ pub use error::{DraftError, DraftLocation, Section, did_you_mean, some_of};
 use measure::not_drivable;
 pub use measure::{FieldDraft, FieldKind, MeasureField, MeasureKindDraft, MeasureType};
 pub use number::NumberDraft;
-pub use shape::{BetweenDraft, BodyShapeDraft, BodyShapeKindDraft, ClearanceDraft, EndsDraft, MinimumDraft};
+pub use shape::{
+    BetweenDraft, BodyShapeDraft, BodyShapeKindDraft, ClearanceDraft, EndsDraft, MinimumDraft,
+    matches_pattern,
+};
 
 use std::collections::BTreeMap;
 

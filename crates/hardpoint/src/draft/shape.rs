@@ -121,3 +121,16 @@ pub struct MinimumDraft {
     /// For pairs of which a shape has such a name, pattern, body or group; the largest counts.
     pub of: Vec<(String, f64)>,
 }
+
+/// True if a name has the form of a pattern of shapes, in which `*` represents any characters.
+pub fn matches_pattern(pattern: &str, name: &str) -> bool {
+    match pattern.split_once('*') {
+        None => pattern == name,
+        Some((start, rest)) => {
+            name.starts_with(start)
+                && (start.len()..=name.len())
+                    .filter(|k| name.is_char_boundary(*k))
+                    .any(|k| matches_pattern(rest, &name[k..]))
+        }
+    }
+}

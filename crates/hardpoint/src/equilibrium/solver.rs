@@ -633,6 +633,17 @@ impl<'a> EquilibriumSolver<'a> {
         response
     }
 
+    /// Poses of all bodies with their derivatives by a unit force.
+    fn poses_by_force(&mut self, one: &Stepper<'_>, force: UnitForce) -> Vec<Pose<Dual>> {
+        let response = self.openings_by_force(force);
+        let pose = |b: usize| if b == 0 { Pose::IDENTITY } else { one.mechanism.state.pose[b] };
+        let along = |b: usize| {
+            let openings = self.loads.unit_twists().zip(&response);
+            pose(b).along(openings.fold(Twist::ZERO, |sum, (w, v)| w[b].times_plus(*v, sum)))
+        };
+        (0..self.model.bodies.len()).map(along).collect()
+    }
+
     /// Derivatives of the openings along a direction; `None` along a driver that is released.
     fn rates(&mut self, one: &mut Stepper<'_>, t: f64, direction: &Along) -> Option<Vec<f64>> {
         self.prepare(one);
@@ -685,18 +696,15 @@ impl<'a> EquilibriumSolver<'a> {
             let kinds = model.measures.iter().enumerate();
             kinds.filter_map(|(m, measure)| measure.kind.compliance().map(|(of, force)| (m, of, force)))
         };
+        let mut moved: Vec<(UnitForce, Vec<Pose<Dual>>)> = Vec::new();
         for (m, of, force) in asked() {
-            self.prepare(one);
-            let response = self.openings_by_force(force);
-            let poses: Vec<Pose<Dual>> = (0..model.bodies.len())
-                .map(|b| {
-                    let openings = self.loads.unit_twists().zip(&response);
-                    let w = openings.fold(Twist::ZERO, |sum, (w, v)| w[b].times_plus(*v, sum));
-                    let pose = if b == 0 { Pose::IDENTITY } else { one.mechanism.state.pose[b] };
-                    pose.along(w)
-                })
-                .collect();
-            out.set(m, Instant::new(model, &self.fixed, &poses).output(of).d);
+            if !moved.iter().any(|(by, _)| *by == force) {
+                self.prepare(one);
+                moved.push((force, self.poses_by_force(one, force)));
+            }
+            for (_, poses) in moved.iter().filter(|(by, _)| *by == force) {
+                out.set(m, Instant::new(model, &self.fixed, poses).output(of).d);
+            }
         }
         let Some(curvatures) = curvatures else { return };
         for k in 0..curvatures.len() {

@@ -147,6 +147,11 @@ impl Expression {
     pub fn can_name(name: &str) -> bool {
         parse::is_free_name(name)
     }
+
+    /// True if expressions read `name` as a constant: `pi`.
+    pub fn is_constant(name: &str) -> bool {
+        name == parse::PI
+    }
 }
 
 /// Equal if the text and the unit are the same.

@@ -305,7 +305,7 @@ impl<'a> Descent<'a> {
                 Err(error(self.span.clone(), "`t` is the time, which has no meaning here", Some(help)))
             }
             Token::Name("t") => self.leaf(Operation::Time),
-            Token::Name("pi") => self.leaf(Operation::Constant(std::f64::consts::PI)),
+            Token::Name(PI) => self.leaf(Operation::Constant(std::f64::consts::PI)),
             Token::Name(name) if self.parameters.contains(&name) => {
                 let parameter = self.parameters.iter().position(|known| *known == name).unwrap_or_default();
                 self.is_used[parameter] = true;
@@ -556,7 +556,7 @@ impl<'a> Descent<'a> {
             "log" => Some("write `ln` or `log10`; ".to_owned()),
             "time" => Some("the time is `t`; ".to_owned()),
             "\u{3c0}" => Some("did you mean `pi`? ".to_owned()),
-            _ => ["t", "pi"]
+            _ => ["t", PI]
                 .iter()
                 .chain(self.parameters)
                 .chain(&functions)
@@ -565,7 +565,7 @@ impl<'a> Descent<'a> {
                 .filter(|(likeness, _)| *likeness > 0.8)
                 .map(|(_, known)| format!("did you mean `{known}`? ")),
         };
-        let known = [&["t", "pi"], self.parameters, &functions].concat().join(", ");
+        let known = [&["t", PI], self.parameters, &functions].concat().join(", ");
         let help = format!("{}known are {known}", hint.unwrap_or_default());
         error(self.span.clone(), format!("unknown name `{name}`"), Some(&help))
     }
@@ -580,9 +580,12 @@ impl<'a> Descent<'a> {
     }
 }
 
+/// Name of 3.14159...
+pub(super) const PI: &str = "pi";
+
 /// True if the name is built in.
 fn is_taken(name: &str) -> bool {
-    ["t", "pi"].contains(&name) || functions().any(|(known, ..)| known == name)
+    ["t", PI].contains(&name) || functions().any(|(known, ..)| known == name)
 }
 
 /// True if the name is valid in expressions and not built in.

@@ -368,6 +368,11 @@ impl JointType {
         self.coordinates.iter().any(|c| c.row == Row::Distance)
     }
 
+    /// True if its coordinate is the height of the contact point of a wheel.
+    pub fn is_pad(&self) -> bool {
+        self.coordinates.iter().any(|c| matches!(c.row, Row::LowestPoint(_)))
+    }
+
     /// True if its point j follows a curve of body i.
     pub fn follows_curve(&self) -> bool {
         self.rows.contains(&Row::Contact)

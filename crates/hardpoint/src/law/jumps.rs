@@ -37,6 +37,15 @@ impl Break {
         [self.before, self.time, self.after]
     }
 
+    /// The last time before it, and the first after it.
+    pub(super) fn sides(self) -> [f64; 2] {
+        let [before, after] = [self.before.min(self.time), self.after.max(self.time)];
+        [
+            if before < self.time { before } else { before.next_down() },
+            if after > self.time { after } else { after.next_up() },
+        ]
+    }
+
     /// True if the break is inside a law that begins at `start` and ends at `end`.
     pub(super) fn is_between(self, start: f64, end: f64) -> bool {
         let room = SAME_TIME * self.time.abs().max(1.0);

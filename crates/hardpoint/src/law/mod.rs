@@ -35,7 +35,7 @@ pub use parameter::{Parameter, ParameterKind};
 pub use sequence::Piece;
 pub use table::{SplineDegree, SplineEndRates, SplineEnds, Table};
 
-use crate::expression::{self, ExpressionError, Stretch};
+use crate::expression::{self, ExpressionError, Range, Stretch};
 use crate::number::{Dual, Interval, Jet, Real};
 
 kinds! {
@@ -319,10 +319,31 @@ impl Law {
     /// # Ok::<(), hardpoint::expression::ExpressionError>(())
     /// ```
     pub fn over(&self, from: f64, to: f64) -> Stretch {
-        let over = self.kind.over(from, to) * Stretch::constant(self.factor);
+        let over = self.kind.over(from, to);
+        let over = if over.value.is_bounded() { over } else { self.over_sides(from, to).unwrap_or(over) };
+        let over = over * Stretch::constant(self.factor);
         let over = over - Stretch::constant(self.design_value.unwrap_or(0.0));
         let over = if self.is_reversed { over * Stretch::constant(-1.0) } else { over };
         over.settled(self.at(0.5 * (from + to)).value(), to - from)
+    }
+
+    /// Range between the times at which branches of the law switch: a branch may be undefined over the whole interval,
+    /// and defined where it counts, like `if(t < 1, 0, (t - 1)^1.5)`. The rate is unbounded, since the value may jump.
+    fn over_sides(&self, from: f64, to: f64) -> Option<Stretch> {
+        let mut breaks = Vec::new();
+        self.kind.find_breaks(from, to, &mut breaks);
+        let mut sides: Vec<[f64; 2]> = breaks.into_iter().map(Break::sides).collect();
+        sides.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let mut begins = from;
+        let mut whole: Option<Stretch> = None;
+        for [before, after] in sides.into_iter().chain([[to; 2]]) {
+            if begins <= before {
+                let side = self.kind.over(begins, before);
+                whole = Some(whole.map_or(side, |whole| whole.or(side)));
+            }
+            begins = f64::max(begins, after);
+        }
+        whole.map(|whole| Stretch { rate: Range::UNBOUNDED, ..whole })
     }
 
     /// Bounds of f and of its first three rates over an interval of time, with outward rounding: in the driver's unit

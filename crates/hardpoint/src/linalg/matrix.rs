@@ -28,7 +28,7 @@ pub(crate) struct Elimination<T> {
 /// Result of a factorisation.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Factored<T> {
-    /// Smallest pivot over the largest; 0 if the matrix is singular or not finite.
+    /// Smallest pivot over the largest, a single one over at least 1; 0 if the matrix is singular or not finite.
     pub pivot_ratio: f64,
     /// True if the determinant is positive.
     pub positive: bool,
@@ -121,8 +121,10 @@ impl<T: Real> Elimination<T> {
             }
         }
         let (zero, one) = (T::zero(), T::one());
-        // Largest pivot, largest inverse of a pivot, product of the pivots, and largest factor.
-        let (mut most, mut least, mut determinant, mut growth) = (zero, zero, one, zero);
+        // Largest pivot, largest inverse of a pivot, product of the pivots, and largest factor. A single pivot is
+        // compared with the unit of its equation.
+        let (mut most, mut least, mut determinant, mut growth) =
+            (if n == 1 { one } else { zero }, zero, one, zero);
         for k in 0..n {
             let pivot = a[k * n + k];
             let inverse = one / pivot;

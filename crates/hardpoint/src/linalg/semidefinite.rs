@@ -14,7 +14,14 @@ pub fn root(a: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
     let mut l = vec![vec![0.0; n]; n];
     for k in 0..n {
         // d = a_kk - sum l_kj^2,  l_ik = (a_ik - sum l_ij l_kj) / sqrt(d)
-        let rest = |i: usize, l: &[Vec<f64>]| a[i][k] - (0..k).map(|j| l[i][j] * l[k][j]).sum::<f64>();
+        let rest = |i: usize, l: &[Vec<f64>]| {
+            let (row, of_pivot) = (&l[i][..k], &l[k][..k]);
+            let mut sum = 0.0;
+            for j in 0..k {
+                sum += row[j] * of_pivot[j];
+            }
+            a[i][k] - sum
+        };
         let pivot = rest(k, &l);
         if !(pivot > NOTHING * largest) {
             let left = (k..n).map(|i| rest(i, &l).abs()).fold(0.0, f64::max);
@@ -33,9 +40,9 @@ pub fn root(a: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
 /// True if A is positive definite, whatever the units of its rows: scaled to ones on its diagonal, its root has all its
 /// pivots.
 pub fn is_definite(a: &[Vec<f64>]) -> bool {
-    let unit = |k: usize| a[k][k].sqrt();
-    let scaled = |r: usize, k: usize| a[r][k] / (unit(r) * unit(k));
     let n = a.len();
+    let units: Vec<f64> = (0..n).map(|k| a[k][k].sqrt()).collect();
+    let scaled = |r: usize, k: usize| a[r][k] / (units[r] * units[k]);
     let scaled: Vec<Vec<f64>> = (0..n).map(|r| (0..n).map(|k| scaled(r, k)).collect()).collect();
     // NaN is not positive.
     (0..n).all(|k| a[k][k] > 0.0) && root(&scaled).is_some_and(|l| (0..n).all(|k| l[k][k] > 0.0))

@@ -114,8 +114,8 @@ pub(super) struct LoadDerivatives<'a, T> {
     beside: Vec<Vec<usize>>,
     /// Per body: true if it has masses.
     has_mass: Vec<bool>,
-    /// Per load: its derivatives by the unit twists W of a body.
-    slopes: Vec<[T; 6]>,
+    /// Required wrenches on the bodies beside one, by its unit twists W.
+    by_units: Vec<[Wrench<T>; 6]>,
     /// Per load: see [`LoadDerivatives::terms_by_own_driver`].
     terms: Vec<f64>,
     /// Derivatives of the friction equations along the direction, at constant reactions.
@@ -160,7 +160,7 @@ impl<'a, T: Real> LoadDerivatives<'a, T> {
             beside: bodies_beside(model),
             has_mass: bodies_with_masses(model),
             forces_on: forces_on_bodies(model),
-            slopes: vec![[T::zero(); 6]; loads.len()],
+            by_units: vec![[Wrench::zero(); 6]; bodies],
             terms: vec![0.0; loads.len()],
             changed,
             constant,
@@ -304,6 +304,7 @@ impl<'a, T: Real> LoadDerivatives<'a, T> {
             if self.forces_on[b].is_empty() && !self.forced.contains(&b) {
                 continue;
             }
+            let beside = &self.beside[b];
             for (unit, twist) in Twist::UNITS.iter().enumerate() {
                 let w = Twist { w: twist.w.spread(), v: twist.v.spread() };
                 self.position.bodies[b] = at.position.bodies[b].along([w, Twist::zero(), Twist::zero()]);
@@ -311,24 +312,27 @@ impl<'a, T: Real> LoadDerivatives<'a, T> {
                 let applied = self.position.loads(self.model, &self.constant);
                 self.forces_on[b].iter().for_each(|e| applied.add(*e, &mut self.required));
                 applied.add_further(&mut self.required);
-                let loads = self.slopes.iter_mut().zip(&mut self.terms).zip(&self.loads);
-                for ((slopes, terms), load) in loads {
-                    let own = load.virtual_twists[b];
-                    let own = [own.w.x, own.w.y, own.w.z, own.v.x, own.v.y, own.v.z][unit].value().abs();
-                    let (mut sum, mut size) = (T::zero(), 0.0);
-                    for &b in &self.beside[b] {
-                        let (wrench, twist) = (self.required[b].derivative(), load.virtual_twists[b]);
-                        sum += wrench.on(twist);
-                        size += sum_of_sizes(wrench.m) * sum_of_sizes(twist.w)
-                            + sum_of_sizes(wrench.f) * sum_of_sizes(twist.v);
-                    }
-                    slopes[unit] = sum;
-                    *terms += own * size;
+                for (wrenches, of) in self.by_units.iter_mut().zip(beside) {
+                    wrenches[unit] = self.required[*of].derivative();
                 }
             }
             self.position.bodies[b] = self.nominal[b];
-            for (n, load) in self.loads.iter_mut().enumerate() {
-                load.by_twists[b][0] += Wrench::from_work(self.slopes[n]);
+            for (load, terms) in self.loads.iter_mut().zip(&mut self.terms) {
+                let own = load.virtual_twists[b].components().map(|y| y.value().abs());
+                let mut slopes = [T::zero(); 6];
+                for (wrenches, of) in self.by_units.iter().zip(beside) {
+                    let y = load.virtual_twists[*of];
+                    // A load does not depend on all bodies.
+                    if y.components().into_iter().all(T::vanishes) {
+                        continue;
+                    }
+                    let (w, v) = (sum_of_sizes(y.w), sum_of_sizes(y.v));
+                    for (unit, wrench) in wrenches.iter().enumerate() {
+                        slopes[unit] += wrench.on(y);
+                        *terms += own[unit] * (sum_of_sizes(wrench.m) * w + sum_of_sizes(wrench.f) * v);
+                    }
+                }
+                load.by_twists[b][0] += Wrench::from_work(slopes);
             }
         }
     }
@@ -357,21 +361,40 @@ impl<'a, T: Real> LoadDerivatives<'a, T> {
             moves.resize(n * (6 * virtual_twists.len() + virtual_speeds.len()), T::zero());
         }
         for (b, load) in loads.iter().enumerate() {
-            let components =
-                load.virtual_twists.iter().flat_map(|y| [y.w.x, y.w.y, y.w.z, y.v.x, y.v.y, y.v.z]);
-            let speeds = load.virtual_speeds.iter().copied();
-            components.chain(speeds).enumerate().for_each(|(k, y)| moves[k * n + b] = y);
+            let mut first = b;
+            for y in &load.virtual_twists {
+                for (k, y) in y.components().into_iter().enumerate() {
+                    moves[first + k * n] = y;
+                }
+                first += 6 * n;
+            }
+            for (k, y) in load.virtual_speeds.iter().enumerate() {
+                moves[first + k * n] = *y;
+            }
         }
+        let sums = &mut sums[..n];
         for (a, load) in loads.iter().enumerate() {
             sums.fill(T::zero());
-            let on_bodies = load.by_twists.iter().flat_map(|by| by[0].work());
-            let on_coordinates = load.turning.pulls.iter().copied();
-            for (p, row) in on_bodies.chain(on_coordinates).zip(moves.chunks_exact(n)) {
+            let mut add = |k: usize, p: T| {
                 if !p.vanishes() {
-                    sums.iter_mut().zip(row).for_each(|(sum, y)| *sum = y.times_plus(p, *sum));
+                    let row = &moves[k * n..][..n];
+                    for b in 0..n {
+                        sums[b] = row[b].times_plus(p, sums[b]);
+                    }
+                }
+            };
+            for (body, by) in load.by_twists.iter().enumerate() {
+                for (k, p) in by[0].work().into_iter().enumerate() {
+                    add(6 * body + k, p);
                 }
             }
-            sums.iter().enumerate().for_each(|(b, sum)| each(a, b, *sum));
+            let first = 6 * load.by_twists.len();
+            for (k, p) in load.turning.pulls.iter().enumerate() {
+                add(first + k, *p);
+            }
+            for b in 0..n {
+                each(a, b, sums[b]);
+            }
         }
     }
 

@@ -79,7 +79,16 @@ impl<T: Real> LoadMeasures<'_, T> {
         let body = [i, j][end];
         let pose = bodies[body.0].pose;
         let marker = geometry.markers[joint.0][end];
-        let z = || pose.rot * marker.rot.cols[2];
+        let is_rod = model.joints[joint.0].kind.is_rod();
+        let place = |end: usize| bodies[[i, j][end].0].pose.point(geometry.markers[joint.0][end].r);
+        // A rod or leg has the line from its first place to its second.
+        let z = || match is_rod {
+            true => {
+                let line = place(1) - place(0);
+                line * (T::one() / line.norm())
+            }
+            false => pose.rot * marker.rot.cols[2],
+        };
         let along = |k: usize, v: Vec3<T>| match axes {
             Axes::Global => v[k],
             Axes::Body => self.applied.turned(body.0).cols[k].dot(v),
@@ -95,6 +104,8 @@ impl<T: Real> LoadMeasures<'_, T> {
             ReactionPart::Force => f.norm(),
             ReactionPart::ForceAlong(k) => along(k, f),
             ReactionPart::Axial => z().dot(f),
+            // It carries nothing across its line.
+            ReactionPart::Radial if is_rod => T::zero(),
             ReactionPart::Radial => across(f),
             ReactionPart::Moment => moment().norm(),
             ReactionPart::MomentAbout(k) => along(k, moment()),

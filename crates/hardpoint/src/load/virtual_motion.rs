@@ -198,6 +198,10 @@ impl<T: Real> VirtualMotion<T> {
                     turning.pulls[c.0] = later.on(state.x[0][c.0]);
                 }
                 for c in step.coordinates() {
+                    // A load does not depend on all bodies.
+                    if flow.speeds[0][c.0].vanishes() {
+                        continue;
+                    }
                     // T . ad(D) x S_Y = -ad(x S_Y)^T T . D
                     later = state.x[0][c.0].ad_transposed(links[k.0]).times_plus(-flow.speeds[0][c.0], later);
                 }
@@ -209,6 +213,10 @@ impl<T: Real> VirtualMotion<T> {
             let (i, j) = (flow.twists[0][i.0], flow.twists[0][j.0]);
             let opened = weights.joint.filter(|(joint, _)| sites.joints[joint.0].closures.contains(&c));
             let apart = j - i - opened.map_or(Twist::zero(), |(_, twist)| twist);
+            if apart.components().into_iter().all(T::vanishes) {
+                turning.ends[c.0] = [Wrench::zero(); 2];
+                continue;
+            }
             let by_ends = &turned.by_ends[c.0];
             let end = |first: usize| Wrench::from_work(array(|k| by_ends[first + k].on(apart)));
             turning.ends[c.0] = [end(0), end(6)];

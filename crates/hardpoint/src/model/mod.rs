@@ -514,9 +514,11 @@ impl Extent {
         if size > 0.0 { size } else { 1.0 }
     }
 
-    /// Diagonal; 0 where there is no point, or none that is finite.
+    /// Diagonal; 0 where there is no point, or none that is finite, or where they coincide up to round-off: their
+    /// differences have no significant digits then.
     pub fn size_or_zero(&self) -> f64 {
         let size = (self.high - self.low).norm();
-        if size.is_finite() && self.low.x <= self.high.x { size } else { 0.0 }
+        let far = f64::max(self.low.norm(), self.high.norm());
+        if size.is_finite() && self.low.x <= self.high.x && size > ONE_PLACE * far { size } else { 0.0 }
     }
 }

@@ -439,7 +439,9 @@ impl<'m> ProvenMotion<'m> {
         while from.time != t {
             let to = if h.abs() >= (t - from.time).abs() { t } else { from.time + h };
             match self.step(plan, &from, to) {
-                Some(next) => from = next,
+                // A half of the shortest step leads nowhere.
+                Some(next) if next.time != from.time => from = next,
+                Some(_) => return Err(failed),
                 None if halvings < MOST_STEP_HALVINGS => {
                     (h, halvings) = (0.5 * (to - from.time), halvings + 1)
                 }

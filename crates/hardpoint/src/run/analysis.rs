@@ -140,7 +140,7 @@ impl<'m> Analysis<'m> {
     }
 
     /// The model that is solved: with equilibrium, its elastic joints are open, and the openings are further drivers.
-    pub(super) fn solved_model(&self) -> &Model {
+    pub fn solved_model(&self) -> &Model {
         self.design_map.model()
     }
 

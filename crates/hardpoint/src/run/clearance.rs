@@ -232,8 +232,12 @@ impl Analysis<'_> {
         let mut plateaus = None;
         let mut times = self.times_within();
         let mut follows_all = model.equilibrium.is_some();
+        let mut first_stop = None;
         for pass in 0..MOST_PASSES {
             let Solution { motion, stop, .. } = self.motion_at(&times, design, false);
+            if pass == 0 {
+                first_stop.clone_from(&stop);
+            }
             follows_all |= pass > 0 && motion.len() < times.len();
             curves.add(self, design, &motion);
             let plateaus = plateaus.get_or_insert_with(|| curves.plateaus());
@@ -253,8 +257,14 @@ impl Analysis<'_> {
         let of_events = located.events.iter().flat_map(|e| [e.time].into_iter().chain(e.kink));
         let mut events: Vec<f64> = of_events.chain(model.times.iter().copied()).collect();
         sort_times(&mut events);
-        let solution = self.motion_at(&events, design, true);
+        if first_stop.is_some() {
+            // Between output times, a motion may end where those alone do not show it: nothing is known beyond.
+            let last = curves.times.last().copied().unwrap_or(f64::NEG_INFINITY);
+            events.retain(|t| *t <= last);
+        }
+        let mut solution = self.motion_at(&events, design, true);
         curves.add(self, design, &solution.motion);
+        solution.stop = solution.stop.or(first_stop);
         self.results(design, &curves, &located, &solution)
     }
 

@@ -71,6 +71,28 @@ impl<T: Real> Polynomial<T> {
         let found = [value, slope / c(h)];
         self.fold.map_or(found, |fold| fold.root(found))
     }
+
+    /// Taylor coefficients of the rate at a time, per fraction of the interval; NaN where they are not known.
+    fn rates(&self, t: f64) -> [T; 5] {
+        let s = T::constant((t - self.from) / self.length);
+        // p(s + u) = c0 + c1 u + ... + c5 u^5
+        let mut c = self.c;
+        for i in 0..5 {
+            for j in (i..5).rev() {
+                c[j] += s * c[j + 1];
+            }
+        }
+        let k = T::constant;
+        match self.fold {
+            None => [c[1], k(2.0) * c[2], k(3.0) * c[3], k(4.0) * c[4], k(5.0) * c[5]],
+            Some(fold) => {
+                let [d, side, unknown] = [c[0].sqrt(), k(fold.side), k(f64::NAN)];
+                // d^2 = c0 + c1 u + c2 u^2 + ..:  d. = c1 / 2 d,  d.. = (c2 - d.^2) / d
+                let rate = c[1] / (d + d);
+                [side * rate, side * (c[2] - rate * rate) / d, unknown, unknown, unknown]
+            }
+        }
+    }
 }
 
 impl<T: Real> SampledCurve<'_, T> {
@@ -252,23 +274,109 @@ impl<T: Real> SampledCurve<'_, T> {
     }
 
     /// A time clamped to interval k.
-    pub(super) fn within(&self, k: usize, t: T) -> f64 {
-        let (t, [low, high]) = (t.value(), [self.times[k], self.times[k + 1]]);
+    pub(super) fn within(&self, k: usize, t: f64) -> f64 {
+        let [low, high] = [self.times[k], self.times[k + 1]];
         let end = if t - low < high - t { low } else { high };
         if (t - end).abs() < THERE * (high - low) { end } else { t.clamp(low, high) }
     }
 
-    /// A time of interval k at which the curve is `at`, with the derivative of one step of Newton's method.
-    fn moved(&self, k: usize, t: f64, at: f64) -> T {
+    /// A time of interval k at which the curve has a given value, with its derivative.
+    fn moved(&self, k: usize, t: f64) -> T {
         let t = T::constant(t);
         let [value, rate] = self.at(k, t);
-        // x(t, b) = at:  t_b = -x_b / x.,  which the dual of one Newton step t - (x - at) / x. carries
-        t - (value - T::constant(at)) / rate
+        // x(t, b) = at:  t_b = -x_b / x.
+        t - (value - T::constant(value.value())) / rate
+    }
+
+    /// Value at a time of interval k at which the abscissa is `at`, or nearly: with the derivative at constant
+    /// abscissa, which is unknown where the curve is vertical.
+    pub(super) fn value_over(&self, x: Option<&Self>, k: usize, t: f64, at: f64) -> T {
+        let time = T::constant(t);
+        let value = self.at(k, time)[0];
+        let Some(x) = x else { return value };
+        // y(x = at) = y + (at - x) dy/dx
+        let miss = T::constant(at) - x.at(k, time)[0];
+        if miss.vanishes() {
+            return value;
+        }
+        let slope = self.slope_over(x, k, t);
+        if slope.value().is_finite() { value + miss * slope } else { value + unknown_change(miss) }
+    }
+
+    /// Slope `dy/dx` over an abscissa at a time of interval k, with the derivative at constant time; NaN where the
+    /// curve is vertical, or the abscissa does not move. Where the abscissa turns or rests at this time, it is the
+    /// limit.
+    pub(super) fn slope_over(&self, abscissa: &Self, k: usize, t: f64) -> T {
+        let [y, x] = [self.series(k, t), abscissa.series(k, t)];
+        // l'Hopital: the ratio of the first coefficients that are not round-off.
+        match (x.first_above(RESTS), y.first_above(RESTS_TOO)) {
+            (Some(first), Some(earlier)) if earlier < first => T::constant(f64::NAN),
+            (Some(first @ (0 | 1)), _) => y.rates[first] / x.rates[first],
+            (Some(_), _) => self.slope_from_other_end(abscissa, k, t),
+            (None, _) => T::constant(f64::NAN),
+        }
+    }
+
+    /// Slope where the abscissa rests with its acceleration, so that derivatives would be needed that are not solved:
+    /// that of the cubic over the abscissa from the other end of interval k, which is near.
+    fn slope_from_other_end(&self, x: &Self, k: usize, t: f64) -> T {
+        let other = if t - self.times[k] < self.times[k + 1] - t { k + 1 } else { k };
+        let ([y, y_rate, y_acceleration], [at, rate, acceleration]) = (self.values[other], x.values[other]);
+        let time = T::constant(t);
+        let (rise, run) = (self.at(k, time)[0] - y, x.at(k, time)[0] - at);
+        // y' = y. / x.,    y'' = (y.. - y' x..) / x.^2,    rise = y' run + y'' run^2 / 2 + c run^3
+        let first = y_rate / rate;
+        let second = (y_acceleration - first * acceleration) / (rate * rate);
+        let three = T::constant(3.0);
+        // y' + y'' run + 3 c run^2
+        three * rise / run - T::constant(2.0) * first - T::constant(0.5) * second * run
+    }
+
+    /// Order of the first derivative of the rate that is not zero at a time of interval k: 0 where the curve moves, 1
+    /// where it turns; `None` if it does not move.
+    pub(super) fn order_of_rest(&self, k: usize, t: f64) -> Option<usize> {
+        self.series(k, t).first_above(RESTS)
+    }
+
+    fn series(&self, k: usize, t: f64) -> RateSeries<T> {
+        let polynomial = self.polynomial(k);
+        RateSeries { rates: polynomial.rates(t), value: polynomial.at(T::constant(t))[0].value() }
     }
 
     pub(super) fn number(&self, k: usize, t: f64) -> f64 {
         self.at(k, T::constant(t))[0].value()
     }
+}
+
+/// Taylor coefficients of the rate of a curve at a time, per fraction of its interval.
+struct RateSeries<T> {
+    rates: [T; 5],
+    value: f64,
+}
+
+impl<T: Real> RateSeries<T> {
+    /// Index of the first coefficient above this fraction of the largest, and above the round-off of the value.
+    fn first_above(&self, part: f64) -> Option<usize> {
+        let sizes = self.rates.map(|rate| rate.value().abs());
+        let largest = sizes.into_iter().fold(0.0, f64::max);
+        let least = f64::max(part * largest, ROUND_OFF * self.value.abs());
+        sizes.into_iter().position(|size| size > least)
+    }
+}
+
+/// Fraction of the largest coefficient of its rate below which an abscissa rests. The next coefficient determines the
+/// slope with a relative error of this size, and a rate of this size with the round-off divided by it: about the same.
+const RESTS: f64 = 1e-8;
+/// The same for a curve over an abscissa that rests: above, it is vertical.
+const RESTS_TOO: f64 = 1e-5;
+/// Round-off of a curve between solved times, as a fraction of its value.
+const ROUND_OFF: f64 = 1e-14;
+
+/// Zero with an unknown derivative, unless the derivative of `by` is zero.
+pub(super) fn unknown_change<T: Real>(by: T) -> T {
+    // The root of a square has none at zero.
+    let change = by - T::constant(by.value());
+    (change * change).sqrt()
 }
 
 /// Binomial coefficients C(n, k).
@@ -390,36 +498,45 @@ const HALVINGS: usize = 60;
 /// not reach it later because of round-off.
 pub(super) const THERE: f64 = 1e-9;
 
-/// Intervals in which the abscissa is `at`, in order, and the time of each, which depends on the design.
+/// Intervals in which the abscissa is `at`, in order, and the time of each.
 pub(super) fn crossings<'c, T: Real>(
     y: &'c SampledCurve<'_, T>,
     x: &'c Option<SampledCurve<'_, T>>,
     at: f64,
-) -> impl Iterator<Item = (usize, T)> + 'c {
+) -> impl Iterator<Item = (usize, f64)> + 'c {
     let x = x.as_ref();
     let distances = x.into_iter().flat_map(|x| &x.values).map(move |x| (x[0].value() - at).abs());
     let near = THERE * distances.fold(0.0, f64::max);
     let intervals = 0..y.values.len().saturating_sub(1);
     intervals.flat_map(move |k| {
         let there = |end: usize| x.is_some_and(|x| (x.values[end][0].value() - at).abs() <= near);
-        let located = |t: f64| x.map(|x| x.moved(k, t, at));
         if let Some(end) = [k, k + 1].into_iter().find(|end| there(*end)) {
-            return Vec::from_iter(located(y.times[end]).map(|t| (k, t)));
+            return vec![(k, y.times[end])];
         }
         let parts = SampledCurve::monotone(y.times, x, k);
-        parts.filter_map(|part| Some((k, crossing(x, k, part, at)?))).collect()
+        parts.filter_map(|part| Some((k, crossing_time(x, k, part, at)?))).collect()
     })
 }
 
-/// Time at which the abscissa is `at` in a monotone part of interval k, which depends on the design; `None` if the
-/// abscissa does not reach it.
+/// Time at which the abscissa is `at` in a monotone part of interval k, with its derivative; `None` if the abscissa
+/// does not reach it.
 pub(super) fn crossing<T: Real>(
+    x: Option<&SampledCurve<'_, T>>,
+    k: usize,
+    part: [f64; 2],
+    at: f64,
+) -> Option<T> {
+    let t = crossing_time(x, k, part, at)?;
+    Some(x.map_or(T::constant(t), |x| x.moved(k, t)))
+}
+
+fn crossing_time<T: Real>(
     x: Option<&SampledCurve<'_, T>>,
     k: usize,
     [mut low, mut high]: [f64; 2],
     at: f64,
-) -> Option<T> {
-    let Some(x) = x else { return (low <= at && at <= high).then(|| T::constant(at)) };
+) -> Option<f64> {
+    let Some(x) = x else { return (low <= at && at <= high).then_some(at) };
     let miss = |t: f64| x.number(k, t) - at;
     if !(miss(low) * miss(high) <= 0.0) {
         return None;
@@ -429,7 +546,7 @@ pub(super) fn crossing<T: Real>(
         let middle = 0.5 * (low + high);
         if (miss(middle) < 0.0) == rising { low = middle } else { high = middle }
     }
-    Some(x.moved(k, 0.5 * (low + high), at))
+    Some(0.5 * (low + high))
 }
 
 /// Abscissa at a time of interval k.

@@ -3,11 +3,14 @@
 //! The code is generic over the number type; dual numbers give the derivatives. Between output times, curves are the
 //! polynomials with the values, rates and accelerations at both ends.
 
-use super::curve::{SampledCurve, THERE, WidePolynomial, abscissa_at, along, apart, crossings};
+use super::curve::{
+    SampledCurve, THERE, WidePolynomial, abscissa_at, along, apart, crossings, unknown_change,
+};
 use super::quadrature::{PathIntegral, coarse_middles, path_error, path_nodes, travel};
 use super::solution::Solution;
 use crate::measure::{MeasureResults, Output};
 use crate::model::{Metric, Model, OutputSource, Reduction, VariableId, on_target};
+use crate::motion::{Stop, StopKind};
 use crate::number::{Dual, Real};
 
 /// The value of a metric.
@@ -37,11 +40,29 @@ pub fn metrics(model: &Model, solution: &Solution) -> Vec<MetricValue> {
 /// curve are `None`, because the rest of the curve is not known.
 pub fn metrics_beside(model: &Model, today: &Solution, other: &Solution) -> Vec<Option<f64>> {
     let whole = other.motion.len() >= today.motion.len();
-    let known = |metric: &Metric| {
-        whole || matches!(metric.take, Reduction::Value(_) | Reduction::Slope(_) | Reduction::RmsAtPoints(_))
-    };
     let values = model.metrics.iter().zip(metrics(model, other));
-    values.map(|(metric, found)| found.value.filter(|_| known(metric))).collect()
+    values.map(|(metric, found)| found.value.filter(|_| whole || is_local(metric))).collect()
+}
+
+/// True if a metric is taken at a position, not of the whole curve.
+fn is_local(metric: &Metric) -> bool {
+    match metric.take {
+        Reduction::Value(_) | Reduction::Slope(_) | Reduction::RmsAtPoints(_) => true,
+        Reduction::Least
+        | Reduction::Greatest
+        | Reduction::Range
+        | Reduction::Change
+        | Reduction::Mean
+        | Reduction::Integral
+        | Reduction::Rms(_) => false,
+    }
+}
+
+/// True if a metric is known of a solution: one of the whole curve is not if the motion ended early, unless an end stop
+/// ended it.
+fn is_known(metric: &Metric, solution: &Solution) -> bool {
+    let is_ended = |stop: &Stop| !matches!(stop.kind, StopKind::JointLimit { .. });
+    is_local(metric) || !solution.stop.as_ref().is_some_and(is_ended)
 }
 
 /// Returns the values of all metrics without derivatives, times and errors.
@@ -54,7 +75,7 @@ pub fn metric_numbers<'m>(
 
 /// Returns the value of one metric; `None` where the motion does not reach the request.
 pub fn metric_number(metric: &Metric, solution: &Solution) -> Option<f64> {
-    let (y, x) = curves(solution, metric)?;
+    let (y, x) = curves(solution, metric).filter(|_| is_known(metric, solution))?;
     take(metric, &y, &x).map(|(value, _)| value)
 }
 
@@ -74,7 +95,7 @@ fn metric_value(model: &Model, solution: &Solution, metric: &Metric) -> MetricVa
         range: 0.0,
         d: vec![f64::NAN; model.variables.len()],
     };
-    let Some((y, x)) = curves(solution, metric) else { return none };
+    let Some((y, x)) = curves(solution, metric).filter(|_| is_known(metric, solution)) else { return none };
     let Some((value, time)) = take(metric, &y, &x).filter(|(value, _)| value.is_finite()) else {
         return none;
     };
@@ -412,11 +433,10 @@ fn abscissa<C>(metric: &Metric, curve: impl Fn(OutputSource) -> Option<C>) -> Op
 /// changes the time, and so the value.
 fn time_error(y: &SampledCurve<'_, f64>, x: &Option<SampledCurve<'_, f64>>, k: usize, t: f64) -> Option<f64> {
     let early = apart(y, k, t)?[0].abs();
-    // abs(dy) + abs(dx / x.) abs(y.)
-    Some(match x {
-        Some(x) => early + (apart(x, k, t)?[0] / x.at(k, t)[1]).abs() * y.at(k, t)[1].abs(),
-        None => early,
-    })
+    // abs(dy) + abs(dx) abs(dy/dx)
+    let Some(x) = x else { return Some(early) };
+    let late = apart(x, k, t)?[0].abs();
+    Some(if late == 0.0 { early } else { early + late * y.slope_over(x, k, t).abs() })
 }
 
 /// Estimates the interpolation error of the metric between output times. The reference curve consists of polynomials
@@ -434,8 +454,16 @@ fn interpolation_error(
         Reduction::Value(_) => at_place(time?),
         Reduction::Slope(_) => {
             let Some(k) = interval(time?) else { return Some(0.0) };
+            let time = time?;
+            let order = x.as_ref().map_or(Some(0), |x| x.order_of_rest(k, time));
+            if order != Some(0) {
+                // A ratio of accelerations, which are solved at output times.
+                let orders = x.as_ref().map_or(y.orders, |x| usize::min(x.orders, y.orders));
+                let is_solved = order == Some(1) && orders > 2 && y.times.contains(&time);
+                return is_solved.then_some(0.0);
+            }
             let rate =
-                |curve: &SampledCurve<'_, f64>| Some([curve.at(k, time?)[1], apart(curve, k, time?)?[1]]);
+                |curve: &SampledCurve<'_, f64>| Some([curve.at(k, time)[1], apart(curve, k, time)?[1]]);
             let [dy, wide_dy] = rate(y)?;
             let [dx, wide_dx] = x.as_ref().map_or(Some([1.0, 0.0]), rate)?;
             Some(((dy + wide_dy) / (dx + wide_dx) - dy / dx).abs())
@@ -517,13 +545,11 @@ fn take<T: Real>(
         }
         Reduction::Value(at) => {
             let (k, t) = crossings(y, x, *at).next()?;
-            Some((y.at(k, t)[0], Some(y.within(k, t))))
+            Some((y.value_over(x.as_ref(), k, t, *at), Some(y.within(k, t))))
         }
         Reduction::Slope(at) => {
             let (k, t) = crossings(y, x, *at).next()?;
-            // dy/dx = y. / x.
-            let by = x.as_ref().map_or(T::one(), |x| x.at(k, t)[1]);
-            Some((y.at(k, t)[1] / by, Some(y.within(k, t))))
+            Some((slope_at(y, x.as_ref(), k, t, *at), Some(y.within(k, t))))
         }
         Reduction::Mean | Reduction::Integral | Reduction::Rms(_) => {
             PathIntegral::of(&metric.take)?.value(path_nodes(metric, y, x)).map(|value| (value, None))
@@ -534,6 +560,30 @@ fn take<T: Real>(
             Some(((squares * T::constant((left.len() as f64).recip())).sqrt(), None))
         }
     }
+}
+
+/// Slope at a time of interval k at which the abscissa is `at`, with the derivative at constant abscissa.
+fn slope_at<T: Real>(
+    y: &SampledCurve<'_, T>,
+    x: Option<&SampledCurve<'_, T>>,
+    k: usize,
+    t: f64,
+    at: f64,
+) -> T {
+    let Some(x) = x else { return y.at(k, T::constant(t))[1] };
+    let slope = y.slope_over(x, k, t);
+    let [place, rate] = x.at(k, T::constant(t));
+    let miss = T::constant(at) - place;
+    if miss.vanishes() {
+        return slope;
+    }
+    if x.order_of_rest(k, t) != Some(0) {
+        // It would need derivatives of the fourth order.
+        return slope + unknown_change(miss);
+    }
+    // dy/dx = y. / x.  at the time at which x = at
+    let moved = T::constant(t) + miss / rate;
+    y.at(k, moved)[1] / x.at(k, moved)[1]
 }
 
 /// Takes a metric of a motion with one output time: a curve that is one point with its rates.
@@ -586,7 +636,7 @@ fn left_at_points<T: Real>(
 ) -> Option<Vec<T>> {
     let left = |[at, target]: &[f64; 2]| {
         let (k, t) = crossings(y, x, *at).next()?;
-        Some(y.at(k, t)[0] - T::constant(*target))
+        Some(y.value_over(x.as_ref(), k, t, *at) - T::constant(*target))
     };
     let counting = points.iter().filter(|p| within_window(metric, p[0]));
     counting.map(left).collect::<Option<Vec<T>>>().filter(|left| !left.is_empty())
@@ -633,8 +683,10 @@ fn extreme<T: Real>(
         }
     }
     // At an end of the window the abscissa is fixed and the time varies.
-    for (k, t) in metric.window.into_iter().flatten().flat_map(|end| crossings(y, x, end)) {
-        offer(y.at(k, t)[0], t.value());
+    for end in metric.window.into_iter().flatten() {
+        for (k, t) in crossings(y, x, end) {
+            offer(y.value_over(x.as_ref(), k, t, end), y.within(k, t));
+        }
     }
     best
 }

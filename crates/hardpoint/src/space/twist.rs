@@ -65,6 +65,13 @@ impl<T: Real> Twist<T> {
         Self { w: Vec3::new(a, b, c), v: Vec3::new(x, y, z) }
     }
 
+    /// Components of w, then of v.
+    #[inline(always)]
+    pub fn components(self) -> [T; 6] {
+        let Self { w, v } = self;
+        [w.x, w.y, w.z, v.x, v.y, v.z]
+    }
+
     /// This twist with the derivative `d`.
     #[inline(always)]
     pub fn with_derivative(self, d: Self) -> Twist<Dual<T>> {

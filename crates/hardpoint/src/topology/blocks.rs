@@ -11,8 +11,8 @@ use crate::model::{BodyId, Model};
 use super::error::TopologyError;
 use super::matching::match_columns;
 use super::{
-    Block, BlockId, ClosureColumn, ClosureId, CoordinateId, CoupledColumn, LinkId, LoopLink, RowId, RowTerm,
-    SetBy, Topology, error,
+    Block, BlockId, ClosureColumn, ClosureId, CoordinateId, CoupledColumn, Formulation, LinkId, LoopLink,
+    RowId, RowTerm, SetBy, Topology, error,
 };
 
 /// Relative size of a pivot below which it is zero in rank decisions.
@@ -20,6 +20,9 @@ use super::{
 /// Rounded input perturbs the redundancy of a planar mechanism by its last typed digit: at best 1e-16, often 1e-9 of
 /// its size. A real constraint that is this weak could not be solved anyway.
 pub(super) const RANK_TOLERANCE: f64 = 1e-8;
+
+/// Largest number of unknowns that redundant rows join to one block: a grid of scissors would be one of hundreds.
+const LARGEST_TIED: usize = 40;
 
 /// Sparse row of the Jacobian in the design configuration: (coordinate, entry). Lengths are relative to the sizes of
 /// their loops.
@@ -103,10 +106,23 @@ fn groups_of(
     topology: &mut Topology,
     jacobian: &[SparseRow],
 ) -> Result<Vec<Vec<CoordinateId>>, Vec<SparseRow>> {
-    if let Some(groups) = independent_groups(topology, jacobian)
+    if let Some(groups) = independent_groups(topology, jacobian, &[])
         && assign(topology, jacobian, &groups).is_ok()
     {
-        return Ok(groups);
+        let tied = tied_by_redundant_rows(topology, jacobian);
+        if tied.is_empty() {
+            return Ok(groups);
+        }
+        let joined = independent_groups(topology, jacobian, &tied)
+            .filter(|groups| groups.iter().all(|group| group.len() <= LARGEST_TIED));
+        if let Some(joined) = joined
+            && assign(topology, jacobian, &joined).is_ok()
+        {
+            return Ok(joined);
+        }
+        if assign(topology, jacobian, &groups).is_ok() {
+            return Ok(groups);
+        }
     }
     // The dependence between loops is not visible in single loops: solve all unknowns together.
     let all: Vec<CoordinateId> = topology.unknown_coordinates().collect();
@@ -115,9 +131,32 @@ fn groups_of(
     Ok(groups)
 }
 
-/// Returns the strongly connected groups of unknowns, in order of solution; `None` if the rows of single loops do not
-/// determine all unknowns.
-fn independent_groups(topology: &Topology, jacobian: &[SparseRow]) -> Option<Vec<Vec<CoordinateId>>> {
+/// Returns the unknowns of every redundant row that has unknowns of several blocks. Where the rows of a block become
+/// dependent, such a row of a later one may hold its unknowns: a third crank beside a parallelogram. With every joint
+/// cut, the rows that keep a planar mechanism in its plane would make one block of all bodies.
+fn tied_by_redundant_rows(topology: &Topology, jacobian: &[SparseRow]) -> Vec<Vec<CoordinateId>> {
+    if topology.formulation == Formulation::Absolute {
+        return Vec::new();
+    }
+    let unknowns = |r: RowId| -> Vec<CoordinateId> {
+        let present = jacobian[r.0].iter().filter(|(_, x)| x.abs() > RANK_TOLERANCE);
+        present.map(|(c, _)| *c).filter(|c| topology[*c].is_unknown()).collect()
+    };
+    let block = |c: &CoordinateId| match topology[*c].set_by {
+        SetBy::Block { block, .. } => Some(block),
+        SetBy::Driver(_) => None,
+    };
+    let rows = topology.redundant().map(unknowns);
+    rows.filter(|tied| tied.iter().any(|c| block(c) != block(&tied[0]))).collect()
+}
+
+/// Returns the strongly connected groups of unknowns, in order of solution, with each set of tied unknowns in one
+/// group; `None` if the rows of single loops do not determine all unknowns.
+fn independent_groups(
+    topology: &Topology,
+    jacobian: &[SparseRow],
+    tied: &[Vec<CoordinateId>],
+) -> Option<Vec<Vec<CoordinateId>>> {
     // Rows that are independent within their own closure, with the closure's unknowns as pattern.
     let coordinates: Vec<CoordinateId> = topology.unknown_coordinates().collect();
     let column_of = columns(topology, &coordinates);
@@ -154,6 +193,12 @@ fn independent_groups(topology: &Topology, jacobian: &[SparseRow]) -> Option<Vec
             for other in topology[link].coordinates().filter_map(column_of).filter(|&other| other != column) {
                 depends.add_edge(NodeIndex::new(column), NodeIndex::new(other), ());
             }
+        }
+    }
+    for unknowns in tied {
+        let nodes = unknowns.iter().filter_map(|c| column_of(*c)).map(NodeIndex::new);
+        for (a, b) in nodes.clone().zip(nodes.cycle().skip(1)) {
+            depends.add_edge(a, b, ());
         }
     }
     // Kosaraju's algorithm is not recursive, so that a chain of loops can have any length.

@@ -34,17 +34,13 @@ pub enum TopologyError {
         bodies: Vec<String>,
     },
     /// Over-driven: drivers prescribe more coordinates than there are degrees of freedom (HP0302).
-    #[error(
-        "the mechanism is over-driven: {} prescribe {}",
-        counted(.driver_names.len(), "driver"),
-        counted(*.mobility, "degree of freedom").replace("degree of freedoms", "degrees of freedom")
-    )]
+    #[error("{}", over_driven_text(.driver_names.len(), *.mobility))]
     OverDriven {
         /// Contradicting drivers.
         drivers: Vec<DriverId>,
         /// Names, in the same order.
         driver_names: Vec<String>,
-        /// Degrees of freedom without drivers.
+        /// Degrees of freedom that these drivers prescribe; other drivers may prescribe further ones.
         mobility: usize,
         /// Joints whose constraints fail.
         joints: Vec<JointId>,
@@ -71,9 +67,10 @@ pub enum TopologyError {
     },
 }
 
-/// `1 driver`, `2 drivers`.
-fn counted(n: usize, one: &str) -> String {
-    format!("{n} {one}{}", if n == 1 { "" } else { "s" })
+fn over_driven_text(drivers: usize, mobility: usize) -> String {
+    let prescribe = if drivers == 1 { "driver prescribes" } else { "drivers prescribe" };
+    let degrees = if mobility == 1 { "degree" } else { "degrees" };
+    format!("the mechanism is over-driven: {drivers} {prescribe} {mobility} {degrees} of freedom")
 }
 
 fn under_driven_text(freedom: &usize, bodies: &[String]) -> String {
@@ -233,10 +230,12 @@ pub(super) fn contradiction(
         let bodies = bodies.iter().map(|b| format!("`{}`", model.bodies[b.0].name)).collect();
         return TopologyError::Immovable { joints, joint_names, bodies };
     }
+    // Each independent contradiction is one driver too many, of those that contradict each other.
+    let excess = model.drivers.len() - topology.mobility;
     TopologyError::OverDriven {
+        mobility: drivers.len().saturating_sub(excess),
         driver_names: drivers.iter().map(|d| format!("`{}`", model.drivers[d.0].name)).collect(),
         drivers,
-        mobility: topology.mobility,
         joints,
         joint_names,
     }

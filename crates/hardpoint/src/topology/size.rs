@@ -9,9 +9,6 @@ use crate::space::{Real, Vec3};
 
 use super::{Closure, Coordinate, Topology};
 
-/// Distance of two points, relative to their distance from the origin, below which they coincide.
-const ONE_PLACE: f64 = 1e-12;
-
 /// Sets the sizes of the loops, and the reference sizes of coordinates and rows.
 pub(super) fn measure(model: &Model, topology: &mut Topology) {
     let joints_of_body = joints_of_bodies(model);
@@ -113,12 +110,5 @@ fn loop_size(
 
 /// Returns the extent of the markers of joints in the design configuration; 0 if they coincide.
 fn extent(model: &Model, joints: impl Iterator<Item = JointId>) -> f64 {
-    let mut far = 0.0_f64;
-    let places: Vec<Vec3> = joints.flat_map(|j| [0, 1].map(|end| model.marker(j, end).r)).collect();
-    for place in &places {
-        far = far.max(place.norm());
-    }
-    let size = Extent::of(places.into_iter()).size_or_zero();
-    // Differences of points that coincide up to round-off have no significant digits.
-    if size > ONE_PLACE * far { size } else { 0.0 }
+    Extent::of(joints.flat_map(|j| [0, 1].map(|end| model.marker(j, end).r))).size_or_zero()
 }

@@ -49,6 +49,35 @@ fn a_second_motor_is_over_driven_and_names_both() {
 }
 
 #[test]
+fn the_counts_of_an_over_driven_loop_leave_out_drivers_elsewhere() {
+    // The four-bar has one degree of freedom and two motors; the sled beside it has a driver of its own.
+    let mut draft = four_bar(CRANK_ROCKER, "t", &[0.0]);
+    draft.bodies.push(body("sled"));
+    draft.joints.push(joint(
+        "rail",
+        "translational",
+        ["ground", "sled"],
+        &[[0.0, 0.0, 1.0]],
+        Some([1.0, 0.0, 0.0]),
+    ));
+    draft.drivers.extend([driver("second", "D", "0.2*t"), driver("pull", "rail", "0.1*t")]);
+    for formulation in [Formulation::Relative, Formulation::Absolute] {
+        let fault = fault(&draft, formulation);
+        assert_eq!(
+            fault.to_string(),
+            "the mechanism is over-driven: 2 drivers prescribe 1 degree of freedom",
+            "{formulation:?}"
+        );
+        assert_eq!(fault.help(), "remove any one of these drivers, or use a joint with more freedom");
+    }
+    // Of a structure beside the sled, the only driver is one too many.
+    draft.drivers.retain(|d| d.name != "second");
+    draft.joints.push(joint("lock", "spherical", ["ground", "coupler"], &[[0.1, 0.3, 0.0]], None));
+    let fault = fault(&draft, Formulation::Relative);
+    assert_eq!(fault.to_string(), "the mechanism is over-driven: 1 driver prescribes 0 degrees of freedom");
+}
+
+#[test]
 fn a_driven_structure_cannot_move() {
     // A triangle of bars has no motion for its motor.
     let z = Some([0.0, 0.0, 1.0]);

@@ -112,6 +112,10 @@ impl Checker<'_> {
             } else if force.is_none() && along.is_none() {
                 self.fault("HP0251", here.key("along"), format!("`{}` has no direction", m.name))
                     .help("give the direction of the force, like `along = \"y\"`");
+            } else if force.is_some() && along.is_some() {
+                let message = format!("`{}` has a direction of its own, and that of its `force`", m.name);
+                self.fault("HP0251", here.key("along"), message)
+                    .help("remove `along`: the force grows along its own direction");
             }
             let is_given = |e: &ElementId| {
                 let kind = &self.model.elements[e.0].kind;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::draft::{
     BetweenDraft, BodyShapeDraft, BodyShapeKindDraft, ClearanceDraft, DraftLocation, EndsDraft, NumberDraft,
-    Section,
+    Section, matches_pattern,
 };
 use crate::model::{
     BodyId, BodyPoint, Clearance, ClearanceId, Joint, Length, PointId, Shape, ShapeId, ShapeKind, ShapePair,
@@ -359,18 +359,5 @@ impl Checker<'_> {
             p == q || self.model.joints.iter().any(on_both)
         };
         a.iter().any(|p| b.iter().any(|q| joined(*p, *q)))
-    }
-}
-
-/// True if a name has the form of a pattern, in which `*` represents any characters.
-fn matches_pattern(pattern: &str, name: &str) -> bool {
-    match pattern.split_once('*') {
-        None => pattern == name,
-        Some((start, rest)) => {
-            name.starts_with(start)
-                && (start.len()..=name.len())
-                    .filter(|k| name.is_char_boundary(*k))
-                    .any(|k| matches_pattern(rest, &name[k..]))
-        }
     }
 }
