@@ -326,7 +326,7 @@ def test_compare_clearance_envelope_synthesis_and_schema(strut, tmp_path):
 
 
 def test_clearances_of_a_changed_model_read_its_shapes(tmp_path):
-    corners = [[x, y, z] for x in (-0.01, 0.01) for y in (-0.01, 0.01) for z in (-0.01, 0.01)]
+    corners = [[x, y, z] for x in (-10, 10) for y in (-10, 10) for z in (-10, 10)]
     faces = [(1, 5, 7, 3), (5, 6, 8, 7), (6, 2, 4, 8), (2, 1, 3, 4), (3, 7, 8, 4), (1, 2, 6, 5)]
     text = "".join(f"v {x} {y} {z}\n" for x, y, z in corners) + "".join("f {} {} {} {}\n".format(*face) for face in faces)
     (tmp_path / "shapes").mkdir()
@@ -339,7 +339,7 @@ def test_clearances_of_a_changed_model_read_its_shapes(tmp_path):
         joints={"slide": {"type": "translational", "bodies": ["ground", "ball"], "at": [0, 0, 0], "axis": "x"}},
         drivers={"motor": {"joint": "slide", "law": "10*t"}},
         shapes={
-            "cube": {"body": "ground", "mesh": {"file": "shapes/cube.obj", "scale": 1000}},
+            "cube": {"body": "ground", "mesh": {"file": "shapes/cube.obj", "scale": 1}},
             "ball": {"body": "ball", "sphere": [30, 0, 0], "radius": 5},
         },
         clearances={"c": {"between": ["cube", "ball"]}},
@@ -348,7 +348,7 @@ def test_clearances_of_a_changed_model_read_its_shapes(tmp_path):
     changed = model.with_(shapes={"ball": {"radius": 6}})
     for one, radius in ((model, 5), (changed, 6)):
         (pair,) = one.clearance(proof=False).facts["pairs"]
-        assert pair["least"]["distance"] == pytest.approx(20 - radius, abs=1e-9)
+        assert pair["least"] == pytest.approx(20 - radius, abs=1e-9)
         assert one.envelope("ball", tmp_path / "ball.stl").facts
 
 

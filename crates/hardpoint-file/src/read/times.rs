@@ -85,9 +85,14 @@ pub(super) fn times(r: &mut Reader<'_>, what: &str, subject: &Subject, f: Field<
     let (start, end, steps) = (start?, end?, steps?);
     if end <= start {
         let at = fields.get("end").map_or(fields.at.clone(), |f| f.value.span());
-        let message = format!("the motion ends at {end} s, before it starts at {start} s");
-        r.senseless(at, message).help =
-            Some("give an `end` after `start` (which is 0 if it is left out)".into());
+        let (message, help) = if end == start {
+            let help = format!("give an `end` after `start`, or one output time: `at = [{start}]`");
+            (format!("the motion ends at {end} s, at which it starts"), help)
+        } else {
+            let help = "give an `end` after `start` (which is 0 if it is left out)".to_owned();
+            (format!("the motion ends at {end} s, before it starts at {start} s"), help)
+        };
+        r.senseless(at, message).help = Some(help);
         return None;
     }
     Some((0..=steps).map(|k| start + (end - start) * k as f64 / steps as f64).collect())

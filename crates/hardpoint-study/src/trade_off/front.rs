@@ -16,8 +16,9 @@ const GAIN: f64 = 0.25;
 const NEAR: f64 = 0.1;
 /// A point nearer to a neighbour than this fraction of the gap is that neighbour.
 const SAME: f64 = 1e-2;
-/// Positions in a gap at which a point is sought; where none is between its neighbours, the front has a jump.
-const POSITIONS: [f64; 3] = [0.5, 0.2, 0.8];
+/// Positions in a gap at which a point is sought; where none is between its neighbours, the front has a jump. The last
+/// ones lengthen the pieces on both sides of it.
+const POSITIONS: [f64; 7] = [0.5, 0.2, 0.8, 0.07, 0.93, 0.025, 0.975];
 /// Weight of a goal below which a point is at an end of the front.
 const NO_WEIGHT: f64 = 1e-6;
 /// Losses in a goal, as fractions of its range, that lead to an end of the front where the design with its optimum is

@@ -681,7 +681,11 @@ impl<'m> Curves<'m> {
                     continue;
                 }
                 if narrow {
-                    // The rate jumps there: nothing is gained by further times.
+                    // The rate jumps there: nothing is gained by further times. If it is round-off on both sides, the
+                    // distance is constant.
+                    if f64::max(from.abs(), to.abs()) * span <= FLAT * self.size {
+                        continue;
+                    }
                     let [near, far] = if value(k) <= value(k + 1) { [k, k + 1] } else { [k + 1, k] };
                     kinks.push([times[near], times[far]]);
                     continue;
