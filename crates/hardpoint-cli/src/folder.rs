@@ -133,12 +133,19 @@ pub fn write_alone(
 ) -> Result<(), WriteError> {
     let target = to.canonicalize().unwrap_or_else(|_| to.to_owned());
     let is_stream = target.metadata().is_ok_and(|of| !of.is_file() && !of.is_dir());
-    let parent = target.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let name = target.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
     let elsewhere = std::env::temp_dir();
-    let mut folder = Folder::open(if is_stream { &elsewhere } else { parent })?;
+    let mut folder = Folder::open(if is_stream { &elsewhere } else { folder_of(&target) })?;
     folder.write(&name, content)?;
     if is_stream { folder.copy_to(&target) } else { folder.commit(&[]) }
+}
+
+/// Writes one new file, whole or not at all; fails if it exists.
+pub fn write_new(to: &Path, content: &[u8]) -> Result<(), WriteError> {
+    let name = to.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+    let mut folder = Folder::open(folder_of(to))?;
+    folder.write(&name, |out| out.write_all(content))?;
+    folder.commit_new()
 }
 
 impl PendingFile {
@@ -178,6 +185,11 @@ impl Drop for Folder {
 
 fn is_absent(error: &io::Error) -> bool {
     error.kind() == io::ErrorKind::NotFound
+}
+
+/// Folder of a file.
+pub fn folder_of(file: &Path) -> &Path {
+    file.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 /// Folder for the results of a case: a subfolder with its name.

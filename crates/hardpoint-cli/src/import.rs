@@ -13,7 +13,7 @@ use serde_json::json;
 
 use crate::args::Import;
 use crate::check;
-use crate::folder::{Folder, WriteError};
+use crate::folder::{Folder, WriteError, folder_of};
 use crate::outcome::Outcome;
 use crate::session::Session;
 use crate::text;
@@ -133,10 +133,6 @@ fn replaces_others(to: &Path, imported: &ImportedModel) -> bool {
         let is_own = previous.contains(&format!("\"{name}\""));
         !is_own && std::fs::read(folder_of(to).join(name)).is_ok_and(|other| other != *bytes)
     })
-}
-
-fn folder_of(to: &Path) -> &Path {
-    to.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 /// Writes the model and the files that it refers to; the model comes last, so that it never exists without them.

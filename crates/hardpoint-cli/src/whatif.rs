@@ -217,8 +217,7 @@ pub fn in_si(text: &str, quantity: Quantity, units: Units) -> Result<f64, String
         return Err(format!("`{text}` is not finite"));
     }
     let unit = if written == "°" { "deg".to_owned() } else { written.to_lowercase() };
-    let length = LengthUnit::ALL.into_iter().find(|u| u.symbol() == unit);
-    let angle = AngleUnit::ALL.into_iter().find(|u| u.symbol() == unit);
+    let (length, angle) = (LengthUnit::of_symbol(&unit), AngleUnit::of_symbol(&unit));
     match (quantity, length, angle) {
         (_, None, None) if unit.is_empty() => Ok(units.to_si(quantity, value)),
         (Quantity::Length, Some(unit), _) => Ok(unit.metres(value)),

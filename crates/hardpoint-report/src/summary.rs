@@ -1,10 +1,9 @@
 //! `summary.json`: what was run, the outcome, and the largest sensitivities.
 
-use hardpoint::Analysis;
-use hardpoint::Solution;
 use hardpoint::joint::Quantity;
 use hardpoint::model::{Model, OutputSource};
 use hardpoint::motion::{Stop, StopKind};
+use hardpoint::{Analysis, Solution};
 use hardpoint_file::{Diagnostic, ModelFile, Units};
 use serde::Serialize;
 

@@ -39,6 +39,11 @@ impl LengthUnit {
         }
     }
 
+    /// The unit with this symbol.
+    pub fn of_symbol(symbol: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|unit| unit.symbol() == symbol)
+    }
+
     /// Number of units per metre.
     pub const fn per_metre(self) -> f64 {
         match self {
@@ -81,6 +86,11 @@ impl AngleUnit {
             Self::Degree => "deg",
             Self::Radian => "rad",
         }
+    }
+
+    /// The unit with this symbol.
+    pub fn of_symbol(symbol: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|unit| unit.symbol() == symbol)
     }
 
     /// Number of units per radian.

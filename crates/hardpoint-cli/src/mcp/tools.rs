@@ -1,7 +1,6 @@
 //! Tools for agents. Each runs a command and returns its JSON document in brief.
 
 use std::collections::BTreeMap;
-use std::io::Write as _;
 use std::num::NonZero;
 use std::path::{Path, PathBuf};
 
@@ -14,7 +13,7 @@ use serde_json::{Value, json};
 use crate::args::{
     Allocate, Common, Import, Method, Motions, Optimize, Sweep, Synthesize, Tolerance, Whatif,
 };
-use crate::folder::Folder;
+use crate::folder::write_new;
 use crate::new::{TEMPLATES, template_named};
 use crate::outcome::Outcome;
 use crate::rpc::{RpcError, params_of};
@@ -840,13 +839,7 @@ fn new_model(
         if path.exists() {
             return Err(format!("the file `{}` exists already; choose another name", path.display()));
         }
-        let parent = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let file = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
-        let written = Folder::open(parent).and_then(|mut folder| {
-            folder.write(&file, |out| out.write_all(model.as_bytes()))?;
-            folder.commit_new()
-        });
-        written.map_err(|error| failed(session.not_written(&error)))?;
+        write_new(path, model.as_bytes()).map_err(|error| failed(session.not_written(&error)))?;
         reply["saved"] = path.display().to_string().into();
     }
     Ok(reply)

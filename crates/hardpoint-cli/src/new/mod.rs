@@ -4,14 +4,14 @@ mod axes;
 mod fit;
 mod table;
 
-use std::io::{BufRead, IsTerminal, Write};
+use std::io::{BufRead, IsTerminal};
 use std::path::{Path, PathBuf};
 
 use hardpoint::draft::did_you_mean;
 use hardpoint_file::LengthUnit;
 
 use crate::args::New;
-use crate::folder::Folder;
+use crate::folder::write_new;
 use crate::outcome::Outcome;
 use crate::session::Session;
 use crate::text;
@@ -126,13 +126,7 @@ fn exists(session: &Session, path: &Path) -> Outcome {
 }
 
 fn write(session: &Session, path: &Path, model: &str) -> Result<(), Outcome> {
-    let parent = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
-    let written = Folder::open(parent).and_then(|mut folder| {
-        folder.write(&name, |out| out.write_all(model.as_bytes()))?;
-        folder.commit_new()
-    });
-    written.map_err(|e| match e.error.kind() {
+    write_new(path, model.as_bytes()).map_err(|e| match e.error.kind() {
         std::io::ErrorKind::AlreadyExists => exists(session, path),
         _ => session.not_written(&e),
     })
@@ -280,7 +274,7 @@ fn millimetres(unit: LengthUnit, x: f64) -> f64 {
 
 /// Unit of a table: from the command line, from the table, or from the user's answer.
 fn unit(session: &Session, options: &New, said: Option<&str>, shown: &str) -> Result<LengthUnit, Outcome> {
-    let named = |text: &str| LengthUnit::ALL.into_iter().find(|u| u.symbol() == text);
+    let named = LengthUnit::of_symbol;
     let known = "valid units: mm, cm, m or in";
     let wrong = |text: &str| session.misunderstood(&format!("`--units {}`: {known}", text::shown(text)));
     let given = options.units.as_deref().map(|text| named(text).ok_or_else(|| wrong(text))).transpose()?;

@@ -349,9 +349,7 @@ fn scales(
     }
     let scale = |written: Option<String>| {
         let Some(written) = written else { return 1.0 };
-        let length = LengthUnit::ALL.into_iter().find(|unit| unit.symbol() == written);
-        let angle = AngleUnit::ALL.into_iter().find(|unit| unit.symbol() == written);
-        match (length, angle) {
+        match (LengthUnit::of_symbol(&written), AngleUnit::of_symbol(&written)) {
             (Some(length), _) => units.length.per_metre() / length.per_metre(),
             (None, Some(angle)) => units.angle.per_radian() / angle.per_radian(),
             (None, None) => 1.0,
@@ -393,8 +391,7 @@ impl Title {
         code: &'static str,
     ) -> Result<Units, DataError> {
         let Some(written) = self.unit.as_deref() else { return Ok(units) };
-        let length = LengthUnit::ALL.into_iter().find(|unit| unit.symbol() == written);
-        let angle = AngleUnit::ALL.into_iter().find(|unit| unit.symbol() == written);
+        let (length, angle) = (LengthUnit::of_symbol(written), AngleUnit::of_symbol(written));
         let (name, written) = (shown(&self.name), shown(written));
         let symbols = |of: &[&str]| format!("give its values in one of {}", of.join(", "));
         let (message, help) = match (of, length, angle) {

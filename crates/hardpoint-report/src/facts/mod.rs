@@ -15,8 +15,6 @@ pub(crate) use text::table;
 use std::collections::{HashMap, HashSet};
 
 use change::direction_text;
-use hardpoint::Analysis;
-use hardpoint::Solution;
 use hardpoint::constraint::Row;
 use hardpoint::joint::{self, Quantity};
 use hardpoint::model::{
@@ -25,6 +23,7 @@ use hardpoint::model::{
 };
 use hardpoint::sensitivity::{self, Condition, JointDefect, admissibility_at_design, conditions_at_design};
 use hardpoint::topology::{Block, Closure, CutReason, Formulation, JointRole, RowId, Topology};
+use hardpoint::{Analysis, Solution};
 use hardpoint_file::{ModelFile, Units};
 use serde::Serialize;
 
