@@ -471,6 +471,10 @@ fn metrics_where_the_abscissa_turns_are_those_of_the_curve() {
         ("\"60*sin(2*pi*t)\"", 8),
         ("\"60*sin(2*pi*t)\"", 40),
         ("\"60*sin(2*pi*t)\"", 7),
+        ("\"60*sin(2*pi*t)\"", 3),
+        ("\"60*sin(2*pi*t)\"", 5),
+        ("\"60*sin(2*pi*t)\"", 101),
+        ("\"60*sin(2*pi*t)\"", 1001),
         ("\"-60*cos(pi*t)\"", 20),
         ("{ type = \"smooth_step\", from = -60, to = 60, start = 0, end = 1 }", 33),
     ] {
@@ -483,10 +487,12 @@ fn metrics_where_the_abscissa_turns_are_those_of_the_curve() {
             let tolerance = if law.contains("smooth") { 1e-5 } else { 1e-9 };
             let at = || format!("{name} of {law} with {steps} steps: {metric:?}");
             assert!(metric.value.is_some_and(|found| (found - value).abs() <= tolerance), "{}", at());
+            // The time of a turn between output times is known to 1e-9 s, and with it the slope there.
+            let of_slope = 10.0 * tolerance;
             let apart = (metric.d[0] - by_a).abs();
             // The ends of the window are the turns: a larger crank reaches the end, a smaller one turns before it.
-            let either = name == "window" && (metric.d[0] - 0.5).abs() <= tolerance;
-            assert!(apart <= tolerance || either || metric.d[0].is_nan() && by_a.is_nan(), "{}", at());
+            let either = name == "window" && (metric.d[0] - 0.5).abs() <= of_slope;
+            assert!(apart <= of_slope || either || metric.d[0].is_nan() && by_a.is_nan(), "{}", at());
             assert!(metric.time.is_none_or(|t| (0.0..=1.0).contains(&t)), "{}", at());
         }
     }

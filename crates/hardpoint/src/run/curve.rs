@@ -338,6 +338,18 @@ impl<T: Real> SampledCurve<'_, T> {
         self.series(k, t).first_above(RESTS)
     }
 
+    /// Estimate of the interpolation error at a time of interval k; `None` if there are too few times.
+    fn error_at(&self, k: usize, t: f64) -> Option<f64> {
+        let (first, end) = (k.saturating_sub(1), usize::min(k + 3, self.values.len()));
+        let near = SampledCurve {
+            times: &self.times[first..end],
+            orders: self.orders,
+            kinks: self.kinks,
+            values: self.values[first..end].iter().map(|numbers| numbers.map(|x| x.value())).collect(),
+        };
+        Some(apart(&near, k - first, t)?[0].abs())
+    }
+
     fn series(&self, k: usize, t: f64) -> RateSeries<T> {
         let polynomial = self.polynomial(k);
         RateSeries { rates: polynomial.rates(t), value: polynomial.at(T::constant(t))[0].value() }
@@ -498,7 +510,12 @@ const HALVINGS: usize = 60;
 /// not reach it later because of round-off.
 pub(super) const THERE: f64 = 1e-9;
 
-/// Intervals in which the abscissa is `at`, in order, and the time of each.
+/// Part of the largest distance from a value within which the abscissa may reach it at a turn between two times, if
+/// there are too few times for an estimate of the interpolation error.
+const NEAR_A_TURN: f64 = 1e-4;
+
+/// Intervals in which the abscissa is `at`, in order, and the time of each. At a turn between two times it is `at`
+/// within the interpolation error: otherwise it would depend on these times whether the abscissa reaches its extremum.
 pub(super) fn crossings<'c, T: Real>(
     y: &'c SampledCurve<'_, T>,
     x: &'c Option<SampledCurve<'_, T>>,
@@ -506,15 +523,32 @@ pub(super) fn crossings<'c, T: Real>(
 ) -> impl Iterator<Item = (usize, f64)> + 'c {
     let x = x.as_ref();
     let distances = x.into_iter().flat_map(|x| &x.values).map(move |x| (x[0].value() - at).abs());
-    let near = THERE * distances.fold(0.0, f64::max);
+    let farthest = distances.fold(0.0, f64::max);
     let intervals = 0..y.values.len().saturating_sub(1);
     intervals.flat_map(move |k| {
-        let there = |end: usize| x.is_some_and(|x| (x.values[end][0].value() - at).abs() <= near);
-        if let Some(end) = [k, k + 1].into_iter().find(|end| there(*end)) {
-            return vec![(k, y.times[end])];
-        }
-        let parts = SampledCurve::monotone(y.times, x, k);
-        parts.filter_map(|part| Some((k, crossing_time(x, k, part, at)?))).collect()
+        let Some(x) = x else {
+            return crossing_time::<T>(None, k, [y.times[k], y.times[k + 1]], at)
+                .into_iter()
+                .map(|t| (k, t))
+                .collect();
+        };
+        let is_at = |end: usize| (x.values[end][0].value() - at).abs() <= THERE * farthest;
+        let turns_at = |t: f64| {
+            let miss = (x.number(k, t) - at).abs();
+            let is_near = miss <= NEAR_A_TURN * farthest;
+            is_near && x.error_at(k, t).is_none_or(|error| miss <= error.max(THERE * farthest))
+        };
+        let turns = x.turns(k).into_iter().map(|t| (t, turns_at(t)));
+        let ends = [k, k + 1].map(|end| (x.times[end], is_at(end)));
+        let places: Vec<_> = ends[..1].iter().copied().chain(turns).chain([ends[1]]).collect();
+        let inner = places.windows(2).map(|pair| {
+            let is_apart = pair.iter().all(|(_, is_there)| !is_there);
+            is_apart.then(|| crossing_time(Some(x), k, [pair[0].0, pair[1].0], at)).flatten()
+        });
+        let reached = places.iter().map(|(t, is_there)| is_there.then_some(*t));
+        // In order of time: each place, then the part after it.
+        let found = reached.zip(inner.chain([None])).flat_map(|(place, part)| place.or(part));
+        found.map(|t| (k, t)).collect::<Vec<_>>()
     })
 }
 

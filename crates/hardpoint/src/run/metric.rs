@@ -194,11 +194,17 @@ pub(crate) fn unresolved_times(solution: &Solution, metric: &Metric, finer: bool
         }
     };
     let part = if finer { RESOLVED } else { RESOLVED_BY_OUTPUTS };
+    let is_at_abscissa =
+        matches!(metric.take, Reduction::Value(_) | Reduction::Slope(_) | Reduction::RmsAtPoints(_));
     let unresolved = |time: &f64| {
         if y.times.contains(time) {
             return false;
         }
         let k = y.interval(*time);
+        // Where the abscissa turns, slopes are ratios of accelerations.
+        if is_at_abscissa && x.as_ref().is_some_and(|x| x.order_of_rest(k, *time) != Some(0)) {
+            return true;
+        }
         // Without an estimate, the error may be large.
         let error = time_error(&y, &x, k, *time).unwrap_or(f64::INFINITY);
         !(error <= part * range)
