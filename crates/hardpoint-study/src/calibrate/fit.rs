@@ -30,6 +30,8 @@ const RUNAWAY: f64 = 1e6;
 const ROUND_OFF: f64 = 1e-9;
 /// The objective has converged if an iteration lowers it by less than this fraction.
 const SETTLED: f64 = 1e-12;
+/// Residuals vanish below this fraction of those of the nominal design. Equilibria are solved to about a tenth of it.
+const VANISHED: f64 = 1e-11;
 /// Median absolute value of normal residuals, as a fraction of their standard deviation.
 const MEDIAN_OF_NORMAL: f64 = 0.6745;
 /// Two designs whose squares differ by less than this fraction cannot be compared by them: the error of the solved
@@ -194,7 +196,7 @@ impl<'b> FitWorkspace<'b> {
             ));
         }
         let at_nominal = self.rows(&self.nominal, &vec![0.0; variables]);
-        self.vanished = SETTLED * SETTLED * at_nominal.r.iter().map(|r| r * r).sum::<f64>();
+        self.vanished = VANISHED * VANISHED * at_nominal.r.iter().map(|r| r * r).sum::<f64>();
         Ok(())
     }
 

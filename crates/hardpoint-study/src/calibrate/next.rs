@@ -1,7 +1,7 @@
 //! Proposed further readings.
 
 use hardpoint::measure::outputs;
-use hardpoint::model::{DriverId, ElementId, Model};
+use hardpoint::model::{DriverId, ElementId, Model, OutputSource};
 use hardpoint::run::{Analysis, Run};
 
 use super::certainty::Directions;
@@ -133,10 +133,13 @@ impl FitWorkspace<'_> {
         let sigmas: Vec<Option<f64>> = (0..directions.len())
             .map(|m| sigma_of(m).filter(|_| self.model.is_known_at_rest(directions[m].source)))
             .collect();
+        let possible = directions.iter().zip(&sigmas).filter(|(_, sigma)| sigma.is_some());
+        let possible: Vec<OutputSource> = possible.map(|(output, _)| output.source).collect();
         let mut found = Vec::new();
         let design = self.design(&search.x);
         let mut at = |analysis: &Analysis<'_>, places: &dyn Fn(usize) -> Option<Place>| {
-            let solution = analysis.solve(Run::new().at(&design[..analysis.model().variables.len()]));
+            let run = Run::new().at(&design[..analysis.model().variables.len()]);
+            let solution = analysis.solve(run.for_outputs(&possible));
             for k in 0..solution.motion.len() {
                 let Some((drivers, forces)) = places(k) else { continue };
                 for (output, sigma) in sigmas.iter().enumerate() {
