@@ -10,7 +10,7 @@ use hardpoint::{
     draft::Section,
     model::{
         CaseId, ChangePointPolicy, DesignVariable, ENDS_MEET, ElementKind, JointId, MeasureKind, Model,
-        OutputSource,
+        OutputSource, Target,
     },
 };
 use hardpoint_file::{Diagnostic, Diagnostics, ModelFile, Severity};
@@ -99,6 +99,17 @@ fn ended(file: &ModelFile, stop: &Stop, who: &str, left: String) -> Diagnostic {
     let place = match stop.kind {
         StopKind::Locked { joint, .. } => Some((Section::Joints, joint.0)),
         StopKind::LawNotFinite { driver } => Some((Section::Drivers, driver.0)),
+        StopKind::FormulaNotFinite { formula } => match model.formulas[formula].of {
+            Target::Parameter(p) => Some((Section::Parameters, p.0)),
+            Target::Coordinate(h, _) if model.hardpoints[h.0].unnamed => {
+                let point = model.points.iter().position(|p| !p.unnamed && p.at == h);
+                point.map(|k| (Section::Points, k))
+            }
+            Target::Coordinate(h, _) => Some((Section::Hardpoints, h.0)),
+            Target::Length(j) => Some((Section::Joints, j.0)),
+            Target::Law(d, _) => Some((Section::Drivers, d.0)),
+            Target::Number(_) => None,
+        },
         StopKind::Interrupted => None,
         StopKind::JointLimit { limit, .. } => Some((Section::JointLimits, limit)),
         StopKind::DoesNotAssemble => stop.remains.first().map(|gap| match gap.of {

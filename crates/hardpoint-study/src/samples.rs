@@ -120,6 +120,7 @@ pub(crate) fn failure_reason(stop: &Stop, model: &Model) -> String {
         | StopKind::DoesNotAssemble
         | StopKind::Locked { .. }
         | StopKind::LawNotFinite { .. }
+        | StopKind::FormulaNotFinite { .. }
         | StopKind::TooFar { .. }
         | StopKind::JointLimit { .. }
         | StopKind::Interrupted

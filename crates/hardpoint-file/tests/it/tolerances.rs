@@ -6,6 +6,7 @@ use std::path::Path;
 
 use hardpoint::model::{AllocationRule, AllocationSettings, Limit, LimitTarget, Model, ToleranceSettings};
 use hardpoint::topology::Formulation;
+use hardpoint::{Analysis, Run};
 use hardpoint_file::{ModelFile, parse};
 use hardpoint_study::tolerance::{
     AllocationError, Error, MetricSpread, MonteCarlo, Overrides, Request, ToleranceResult, tolerance,
@@ -282,6 +283,47 @@ fn designs_beyond_the_dead_point_are_counted_with_their_reason() {
     assert_eq!(drawn.metrics[0].known + drawn.failed, 20_000);
     let lowest = &spread(&file, &found, "first").worst[0];
     assert!(found.metrics.iter().any(|m| m.worst.iter().any(|e| e.why.is_some())), "{lowest:?}");
+}
+
+#[test]
+fn designs_whose_expressions_have_no_value_fail() {
+    let file = model(
+        r#"
+name = "tracer"
+units = { length = "mm", angle = "deg" }
+parameters.a = { value = 0, unit = "length", tolerance = 0.1 }
+hardpoints.O = [0, 0, 0]
+bodies.slider = {}
+joints.slide = { type = "translational", bodies = ["ground", "slider"], at = "O", axis = "x" }
+drivers.motor = { joint = "slide", law = "t" }
+points.Q = { body = "slider", at = ["10 + sqrt(0.05 - a)", "a", 0] }
+measures.x = { type = "position", point = "Q", along = "x" }
+metrics.x = { of = "x", take = "value", at = 0 }
+time = { end = 1.0, steps = 1 }
+"#,
+    );
+    let analysis = Analysis::new(&file.model).unwrap();
+    // The root vanishes at 0.05 mm: one of eight designs is beyond it.
+    let designs: Vec<Vec<f64>> = (0..8).map(|k| vec![0.9e-5 * f64::from(k) - 1e-5]).collect();
+    analysis.solve_designs(Run::new().without_sensitivities(), &designs, |k, solution| {
+        let expected = 1e-2 + 1e-3 * (0.05 - 1e3 * designs[k][0]).max(0.0).sqrt();
+        match (k, &solution.stop) {
+            (7, Some(stop)) => {
+                assert_eq!(stop.code(), "HP0412");
+                let headline = "the expression for `Q.x` has no finite value in this design";
+                assert_eq!(stop.headline(&file.model), headline);
+                assert_eq!(solution.motion.len(), 0);
+            }
+            (_, Some(stop)) => panic!("{k}: {stop:?}"),
+            (_, None) => assert!((solution.measured.value(0, 0)[0] - expected).abs() < 1e-12, "{k}"),
+        }
+    });
+    let found = examined(&file, |_| ());
+    let drawn = sampled(&found);
+    // One and a half standard deviations
+    let expected = 0.066_807_2 * drawn.samples as f64;
+    assert!((drawn.failed as f64 - expected).abs() < ERRORS * expected.sqrt(), "{} {expected}", drawn.failed);
+    assert!(drawn.failures.len() == 1 && drawn.failures[0].why.contains("`Q.x`"), "{:?}", drawn.failures);
 }
 
 #[test]

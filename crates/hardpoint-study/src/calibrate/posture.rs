@@ -126,6 +126,7 @@ pub(super) fn path_end(stop: &Stop, model: &Model) -> String {
         | StopKind::DoesNotAssemble
         | StopKind::Locked { .. }
         | StopKind::LawNotFinite { .. }
+        | StopKind::FormulaNotFinite { .. }
         | StopKind::TooFar { .. }
         | StopKind::JointLimit { .. }
         | StopKind::Interrupted

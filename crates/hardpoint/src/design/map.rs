@@ -98,6 +98,16 @@ impl<'m> DesignMap<'m> {
         }
     }
 
+    /// Index of the first formula that has no finite value for these values of the variables; laws are evaluated over
+    /// time.
+    pub fn undefined_formula(&self, values: &[f64]) -> Option<usize> {
+        let design = PlacedDesign::new(self, values.to_vec());
+        let is_law = |k: usize| matches!(self.model().formulas[k].of, Target::Law(..));
+        let results = [&design.values.formulas, &design.for_lengths.formulas];
+        let mut all = results.into_iter().flat_map(|of| of.iter().enumerate());
+        all.find(|(k, value)| !value.is_finite() && !is_law(*k)).map(|(k, _)| k)
+    }
+
     /// Returns the global positions of the hardpoints for these values of the variables, m.
     pub fn places<T: Real>(&self, values: &[T]) -> Vec<Vec3<T>> {
         let design = PlacedDesign::new(self, values.to_vec());

@@ -44,6 +44,25 @@ pub enum Target {
     Number(NumberId),
 }
 
+impl Model {
+    /// Name of a number that a formula gives, as in messages.
+    pub fn target_name(&self, of: Target) -> String {
+        match of {
+            Target::Parameter(p) => format!("`{}`", self.parameters[p.0].name),
+            Target::Coordinate(h, axis) => {
+                let name = &self.hardpoints[h.0].name;
+                format!("`{name}.{}`", ["x", "y", "z"][axis])
+            }
+            Target::Length(j) => format!("the length of `{}`", self.joints[j.0].name),
+            Target::Law(d, _) => format!("the law of `{}`", self.drivers[d.0].name),
+            Target::Number(n) => {
+                let number = &self.numbers[n.0];
+                format!("`{}` of `{}`", number.key, number.owner)
+            }
+        }
+    }
+}
+
 /// A number of the model that follows others.
 #[derive(Clone, Debug)]
 pub struct Formula {

@@ -141,8 +141,13 @@ fn is_side_of_start(m: &Mechanism<'_>) -> Result<(), StepRejection> {
 /// does not close the nominal design either. A changed design is on the branch of the nominal one, or does not
 /// assemble.
 fn is_searched(m: &Mechanism<'_>, stop: &Stop) -> bool {
-    if matches!(stop.kind, StopKind::LawNotFinite { .. } | StopKind::TooFar { .. } | StopKind::Interrupted)
-        || m.saved.time > SINGULAR_DRAWING
+    if matches!(
+        stop.kind,
+        StopKind::LawNotFinite { .. }
+            | StopKind::FormulaNotFinite { .. }
+            | StopKind::TooFar { .. }
+            | StopKind::Interrupted
+    ) || m.saved.time > SINGULAR_DRAWING
     {
         return false;
     }

@@ -52,6 +52,11 @@ pub enum StopKind {
         /// The driver.
         driver: DriverId,
     },
+    /// A formula of the design has no finite value (HP0412).
+    FormulaNotFinite {
+        /// Index in [`Model::formulas`].
+        formula: usize,
+    },
     /// A driver moves farther between two output times than the solver follows (HP0408).
     TooFar {
         /// The driver.
@@ -127,6 +132,7 @@ impl Stop {
             StopKind::BranchChange => "HP0402",
             StopKind::Locked { .. } => "HP0403",
             StopKind::LawNotFinite { .. } => "HP0404",
+            StopKind::FormulaNotFinite { .. } => "HP0412",
             StopKind::JointLimit { begins_beyond: true, .. } => "HP0267",
             StopKind::JointLimit { begins_beyond: false, .. } => "HP0268",
             StopKind::Interrupted => "HP0405",
@@ -168,6 +174,12 @@ impl Stop {
                 format!(
                     "the law of driver `{}` has no finite value at t = {t:.6} s",
                     model.drivers[driver.0].name
+                )
+            }
+            StopKind::FormulaNotFinite { formula } => {
+                format!(
+                    "the expression for {} has no finite value in this design",
+                    model.target_name(model.formulas[formula].of)
                 )
             }
             StopKind::TooFar { driver } => {
@@ -219,6 +231,7 @@ impl Stop {
             }
             StopKind::NothingHolds { .. }
             | StopKind::LimitLoad { .. }
+            | StopKind::FormulaNotFinite { .. }
             | StopKind::DoesNotAssemble
             | StopKind::Locked { .. } => self.headline(model),
         }
@@ -260,6 +273,10 @@ impl Stop {
                  freedom"
             }
             StopKind::LawNotFinite { .. } => "change the law, or end the run before that time",
+            StopKind::FormulaNotFinite { .. } => {
+                "change the design less, or narrow the bounds of its variables: the expression divides by zero or takes a \
+                 root of a negative number there"
+            }
             StopKind::TooFar { .. } => {
                 "the limit between two output times is 100,000 rad (about 16,000 turns), or 100,000 sizes of the mechanism: \
                  request more output times, or make the law slower"

@@ -262,6 +262,7 @@ impl<'m> Analysis<'m> {
         PreparedDesign {
             geometry: self.design_map.geometry(&values),
             laws: self.design_map.laws(&values),
+            undefined: self.design_map.undefined_formula(&values),
             fields: if sensitivities { self.design_map.fields(&values) } else { Vec::new() },
             opens: if sensitivities { self.opens().to_vec() } else { Vec::new() },
             scope,
@@ -386,12 +387,12 @@ impl<'m> Analysis<'m> {
         (0..self.model().bodies.len()).map(|b| sinks.iter().any(|s| s.wants(BodyId(b)))).collect()
     }
 
-    /// Stop of a run that was interrupted after `done` output times.
-    pub(super) fn interrupted(&self, done: usize) -> Stop {
+    /// Stop of a run for a reason outside the solver, after `done` output times.
+    pub(super) fn stopped(&self, kind: StopKind, done: usize) -> Stop {
         let last_time = done.checked_sub(1).map(|k| self.model().times[k]);
         let t = last_time.or(self.model().times.first().copied()).unwrap_or(0.0);
         Stop {
-            kind: StopKind::Interrupted,
+            kind,
             last_time,
             failed_time: t,
             drivers: self.model().drivers.iter().map(|d| d.law.at(t).value()).collect(),

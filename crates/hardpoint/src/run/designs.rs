@@ -95,11 +95,18 @@ impl Analysis<'_> {
         designs: &[Vec<f64>],
         solutions: &mut [Solution],
     ) -> Option<SolverStatistics> {
-        let batch = batch.as_mut().filter(|_| designs.len() > 1)?;
+        let batch = batch.as_mut().filter(|_| self.are_defined(designs))?;
         solutions.iter_mut().for_each(|s| self.make_room(&mut s.motion, 0));
         let effort = batch.run(&self.whole(designs), |_, _| self.flow())?;
         solutions.iter_mut().enumerate().for_each(|(lane, s)| batch.hand_over(lane, &mut s.motion));
         Some(effort)
+    }
+
+    /// True if these are several designs, all of whose formulas have values.
+    fn are_defined(&self, designs: &[Vec<f64>]) -> bool {
+        let is_defined =
+            |design: &Vec<f64>| self.design_map().undefined_formula(&self.model().whole(design)).is_none();
+        designs.len() > 1 && designs.iter().all(is_defined)
     }
 
     /// Breaks once the analysis is interrupted: each design is then solved on its own, and stops as interrupted.
@@ -153,7 +160,7 @@ impl Analysis<'_> {
         designs: &[Vec<f64>],
         sinks: &mut [S],
     ) -> Option<(SolverStatistics, Vec<Resistance>)> {
-        let batch = batch.as_mut().filter(|_| designs.len() > 1)?;
+        let batch = batch.as_mut().filter(|_| self.are_defined(designs))?;
         let (wanted, moved) = (self.wanted(sinks), batch.moved());
         let variables = self.model().variables.len();
         let mut resisting = vec![(Vec::new(), 0.0); LANES * variables];

@@ -46,6 +46,8 @@ pub(crate) struct PreparedDesign {
     pub values: Vec<f64>,
     pub geometry: Geometry,
     pub laws: Vec<Law>,
+    /// First formula without a finite value, by its index in [`Model::formulas`](crate::model::Model::formulas).
+    pub undefined: Option<usize>,
     /// Design velocities of the variables, if requested, and the joints that each opens in the nominal design.
     pub fields: Vec<DesignVelocity>,
     pub opens: Vec<Vec<JointDefect>>,
@@ -78,6 +80,8 @@ pub(crate) struct Walk<'a> {
     needs: Option<Arc<NeededResults>>,
     /// Stop at the limit of a joint, which ends the output times.
     at_limit: Option<Stop>,
+    /// Formula without a finite value in this design.
+    undefined: Option<usize>,
     /// Output times solved.
     pub done: usize,
 }
@@ -127,6 +131,7 @@ impl<'a> Walk<'a> {
             wanted,
             needs: design.needs.clone(),
             at_limit: analysis.stop_at_limit(design),
+            undefined: design.undefined,
             done: 0,
         }
     }
@@ -172,12 +177,15 @@ impl<'a> Walk<'a> {
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
         mut then: impl FnMut(&mut S, SolvedSteps<'_, 'a>, usize, Option<&SensitivitySolver>),
     ) -> Option<Stop> {
+        if let Some(formula) = self.undefined {
+            return Some(self.analysis.stopped(StopKind::FormulaNotFinite { formula }, 0));
+        }
         let times = self.times();
         let mut stop = None;
         while self.done < times.len() && stop.is_none() {
             let k = self.done;
             if self.analysis.is_ended() {
-                return Some(self.analysis.interrupted(k));
+                return Some(self.analysis.stopped(StopKind::Interrupted, k));
             }
             let at_once = match k {
                 0 => 0,
@@ -243,7 +251,7 @@ impl<'a> Walk<'a> {
         for count in 1..=solved {
             let done = self.done + count;
             if progress(Progress { done, total }).is_break() && done < total {
-                return (count, Some(self.analysis.interrupted(done)));
+                return (count, Some(self.analysis.stopped(StopKind::Interrupted, done)));
             }
         }
         (solved, None)
