@@ -300,6 +300,7 @@ points.Q = { body = "slider", at = ["10 + sqrt(0.05 - a)", "a", 0] }
 measures.x = { type = "position", point = "Q", along = "x" }
 metrics.x = { of = "x", take = "value", at = 0 }
 time = { end = 1.0, steps = 1 }
+[tolerance]
 "#,
     );
     let analysis = Analysis::new(&file.model).unwrap();
