@@ -471,3 +471,58 @@ s = {{ type = "spring", from = {{ body = "ground", at = [-100, 0, 0] }}, to = {{
         assert!(headline.contains("along y") || headline.contains("along joint `J` along y"), "{headline}");
     }
 }
+
+/// A spring of 1 N m/deg winds up by 270 deg, an elastic joint by 800 deg, and a driver turns by 800 deg beside them.
+const WINDING: &str = r#"
+name = "winding"
+units = { length = "mm", angle = "deg" }
+bodies = { arm = {}, wheel = {}, post = {}, disc = {}, rotor = {} }
+[joints]
+hinge = { type = "revolute", bodies = ["ground", "arm"], at = [0, 0, 0], axis = "z" }
+axle = { type = "revolute", bodies = ["ground", "wheel"], at = [300, 0, 0], axis = "z" }
+mount = { type = "fixed", bodies = ["ground", "post"], at = [0, 500, 0], axis = "z", axis2 = "x" }
+shaft = { type = "revolute", bodies = ["ground", "disc"], at = [0, 900, 0], axis = "z" }
+pivot = { type = "revolute", bodies = ["disc", "rotor"], at = [0, 900, 0], axis = "z" }
+[couplers]
+gear = { type = "gear", joints = ["hinge", "axle"], teeth = [20, 40] }
+[drivers]
+motor = { joint = "shaft", law = "800*t" }
+[forces]
+spring = { type = "torsion_spring", joint = "hinge", stiffness = 1 }
+torque = { type = "moment", body = "arm", moment = 270, about = "z", law = "t" }
+elastic = { type = "elastic_joint", joint = "mount", about_z = 1 }
+twist = { type = "moment", body = "post", moment = 800, about = "z", law = "t" }
+coil = { type = "torsion_spring", joint = "pivot", stiffness = 1 }
+[equilibrium]
+[measures]
+hinge = { type = "coordinate", joint = "hinge" }
+axle = { type = "coordinate", joint = "axle" }
+arm = { type = "angle", from = [1, 0, 0], to = { body = "arm", axis = "x" }, about = "z" }
+force = { type = "spring_force", force = "spring" }
+post = { type = "angle", from = [1, 0, 0], to = { body = "post", axis = "x" }, about = "z" }
+shaft = { type = "coordinate", joint = "shaft" }
+disc = { type = "angle", from = [1, 0, 0], to = { body = "disc", axis = "x" }, about = "z" }
+[time]
+"#;
+
+#[test]
+fn angles_in_equilibrium_are_counted_through_whole_turns_for_any_output_times() {
+    for formulation in [Formulation::Relative, Formulation::Absolute] {
+        for times in ["at = [1]", "at = [0, 1]", "at = [0, 0.5, 1]", "end = 1\nsteps = 3", "end = 1\nsteps = 40"] {
+            let solution = solved_by(&format!("{WINDING}{times}\n"), formulation);
+            let last = solution.motion.len() - 1;
+            for (name, degrees) in [
+                ("hinge", 270.0),
+                ("axle", -135.0),
+                ("arm", 270.0),
+                ("post", 800.0),
+                ("shaft", 800.0),
+                ("disc", 800.0),
+            ] {
+                let what = format!("{name} at {times}, {formulation:?}");
+                near(value(&solution, last, name).to_degrees(), degrees, SAME, &what);
+            }
+            near(value(&solution, last, "force"), -270.0, SAME, times);
+        }
+    }
+}

@@ -52,10 +52,10 @@ impl ElementTurns {
         Self(Turns::of_all(model, topology))
     }
 
-    /// Approximate coordinates of the elements.
+    /// Approximate coordinates of the elements at the position at rest that was solved last.
     pub fn at(&self, one: &Stepper<'_>) -> Vec<f64> {
         let mut near = vec![0.0; self.0.len()];
-        let counted = one.turns.as_ref().map(|turns| &turns.values[..]);
+        let counted = one.turns.as_ref().map(|turns| &turns.ahead[..]);
         Turns::write(&self.0, &one.mechanism.state, counted, &mut near);
         near
     }

@@ -52,8 +52,9 @@ fn turns(model: &Model, topology: &Topology, outputs: &[Output]) -> Vec<Option<T
             link_of[j.0] = Some(link);
         }
     }
-    let driver_of: BTreeMap<_, _> =
-        model.drivers.iter().enumerate().map(|(k, d)| ((d.joint, d.coordinate), DriverId(k))).collect();
+    // In equilibrium some drivers are released, and openings have no laws.
+    let drivers = model.drivers.iter().enumerate().filter(|_| model.equilibrium.is_none());
+    let driver_of: BTreeMap<_, _> = drivers.map(|(k, d)| ((d.joint, d.coordinate), DriverId(k))).collect();
     let path = |origin| Turns::Path(PathTurns { angle: None, origin });
     let of_joint = |joint: JointId, coordinate: usize| {
         if let Some(&d) = driver_of.get(&(joint, coordinate)) {

@@ -16,6 +16,7 @@ use super::path::Path;
 use super::path_step::{MOST_BEND, trust};
 use super::step::{RoughStep, Step, take};
 use super::stepper::Stepper;
+use super::turns::TURN_TRUST;
 use super::walk::walk;
 
 /// Largest move of a coordinate per travel of the drivers that is taken at once, rad or sizes: arms are shorter than
@@ -79,22 +80,13 @@ pub(crate) fn advance(one: &mut Stepper<'_>, t: f64) -> Result<(), Box<Stop>> {
 /// Moves all drivers straight to these values from the accepted position, to a position at rest that is not accepted
 /// yet: at once, or else in parts. Fails if they are too far for the largest number of parts.
 pub(crate) fn move_at_rest(one: &mut Stepper<'_>, values: &[f64]) -> Result<(), StepRejection> {
-    let Mechanism { saved, driver_units, .. } = &one.mechanism;
-    let travel = |((from, to), unit): ((&[f64; 3], &f64), &f64)| (to - from[0]).abs() / unit;
-    let moved = saved.drivers.iter().zip(values).zip(driver_units).map(travel).fold(0.0, f64::max);
-    let from: Vec<f64> = saved.drivers.iter().map(|[value, ..]| *value).collect();
-    let mut parts = 1;
+    let way = WayAtRest::new(one, one.mechanism.saved.drivers.iter(), values);
+    let mut parts = way.least_parts;
     loop {
-        let of_part = |part: usize| {
-            let way = part as f64 / parts as f64;
-            let between =
-                |(from, to): (&f64, &f64)| if part == parts { *to } else { from + (to - from) * way };
-            from.iter().zip(values).map(between).collect::<Vec<f64>>()
-        };
         one.mechanism.restore();
         // Without a prediction the first correction is the move itself.
-        let trusted = trust(MOVE_PER_TRAVEL * moved / parts as f64);
-        match (1..=parts).try_for_each(|part| hold(one, &of_part(part), trusted)) {
+        let trusted = trust(MOVE_PER_TRAVEL * way.travel / parts as f64);
+        match way.follow(one, parts, trusted, true) {
             Err(_) if parts < MOST_PARTS => parts *= 2,
             result => return result,
         }
@@ -103,13 +95,58 @@ pub(crate) fn move_at_rest(one: &mut Stepper<'_>, values: &[f64]) -> Result<(), 
 
 /// Moves all drivers to these values, which are near the position of the state, to a position at rest.
 pub(crate) fn shift_at_rest(one: &mut Stepper<'_>, values: &[f64]) -> Result<(), StepRejection> {
-    hold(one, values, f64::INFINITY)
+    let way = WayAtRest::new(one, one.mechanism.drivers.iter(), values);
+    way.follow(one, way.least_parts, f64::INFINITY, false)
+}
+
+/// Straight way of all drivers between two positions at rest.
+struct WayAtRest<'v> {
+    from: Vec<f64>,
+    to: &'v [f64],
+    /// Largest travel of a driver, rad or sizes.
+    travel: f64,
+    /// Number of parts in each of which angles can be counted.
+    least_parts: usize,
+}
+
+impl<'v> WayAtRest<'v> {
+    fn new<'d>(one: &Stepper<'_>, from: impl Iterator<Item = &'d [f64; 3]>, to: &'v [f64]) -> Self {
+        let from: Vec<f64> = from.map(|[value, ..]| *value).collect();
+        let travel = |((from, to), unit): ((&f64, &f64), &f64)| (to - from).abs() / unit;
+        let travel = from.iter().zip(to).zip(&one.mechanism.driver_units).map(travel).fold(0.0, f64::max);
+        let least_parts =
+            if one.turns.is_some() { (travel / TURN_TRUST).ceil().max(1.0) as usize } else { 1 };
+        Self { from, to, travel, least_parts }
+    }
+
+    /// Solves the end of each part of the way.
+    fn follow(
+        &self,
+        one: &mut Stepper<'_>,
+        parts: usize,
+        trust: f64,
+        from_accepted: bool,
+    ) -> Result<(), StepRejection> {
+        for part in 1..=parts {
+            let way = part as f64 / parts as f64;
+            let between =
+                |(from, to): (&f64, &f64)| if part == parts { *to } else { from + (to - from) * way };
+            let values: Vec<f64> = self.from.iter().zip(self.to).map(between).collect();
+            hold(one, &values, trust)?;
+            if let Some(turns) = &mut one.turns {
+                turns.follow_at_rest(&one.mechanism.state, from_accepted && part == 1);
+            }
+        }
+        Ok(())
+    }
 }
 
 /// Accepts a position at rest.
 pub(crate) fn accept_at_rest(one: &mut Stepper<'_>, t: f64) {
     one.save(t);
-    one.renew_turns();
+    if let Some(turns) = &mut one.turns {
+        turns.accept_at_rest(&one.mechanism.state);
+    }
 }
 
 /// Reason why a mechanism at rest does not reach a position at time t.

@@ -59,7 +59,8 @@ pub(crate) struct TurnCounter<'m> {
     spin: f64,
     /// The same at the end of a step.
     spin_ahead: f64,
-    ahead: Vec<f64>,
+    /// Per angle: its value at the end of a step, or at the position at rest that was solved last.
+    pub ahead: Vec<f64>,
     /// Scratch.
     kept: Vec<f64>,
     found: Vec<[f64; 3]>,
@@ -93,6 +94,25 @@ impl<'m> TurnCounter<'m> {
         {
             *value = turned(*now, origin.unwrap_or(*now));
         }
+        self.spin = self.spin_ahead;
+        self.ahead.copy_from_slice(&self.values);
+    }
+
+    /// Counts at a position at rest that is near the one that was solved last, or near the accepted position.
+    pub fn follow_at_rest(&mut self, state: &State<f64>, from_accepted: bool) {
+        if from_accepted {
+            self.ahead.copy_from_slice(&self.values);
+        }
+        self.look(&|b| BodyState::of(state, b));
+        for (ahead, [now, ..]) in self.ahead.iter_mut().zip(&self.found) {
+            *ahead = counted(*now, *ahead, *ahead);
+        }
+    }
+
+    /// Accepts the position at rest that was solved last.
+    pub fn accept_at_rest(&mut self, state: &State<f64>) {
+        self.follow_at_rest(state, false);
+        self.values.copy_from_slice(&self.ahead);
         self.spin = self.spin_ahead;
     }
 
