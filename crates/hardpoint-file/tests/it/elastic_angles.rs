@@ -508,7 +508,9 @@ disc = { type = "angle", from = [1, 0, 0], to = { body = "disc", axis = "x" }, a
 #[test]
 fn angles_in_equilibrium_are_counted_through_whole_turns_for_any_output_times() {
     for formulation in [Formulation::Relative, Formulation::Absolute] {
-        for times in ["at = [1]", "at = [0, 1]", "at = [0, 0.5, 1]", "end = 1\nsteps = 3", "end = 1\nsteps = 40"] {
+        for times in
+            ["at = [1]", "at = [0, 1]", "at = [0, 0.5, 1]", "end = 1\nsteps = 3", "end = 1\nsteps = 40"]
+        {
             let solution = solved_by(&format!("{WINDING}{times}\n"), formulation);
             let last = solution.motion.len() - 1;
             for (name, degrees) in [

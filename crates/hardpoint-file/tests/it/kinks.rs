@@ -193,3 +193,50 @@ fn metrics_of_curves_with_kinks_are_those_of_closed_forms() {
         }
     }
 }
+
+/// A point on two slides that returns to its place at the end, but for round-off.
+#[test]
+fn roots_of_sums_of_squares_have_no_false_extrema_where_they_vanish_but_for_round_off() {
+    const SAMPLES: u32 = 200_000;
+    for (p, q) in [(1.0_f64, 2.0_f64), (0.3, 2.5), (0.7, 2.0)] {
+        let at = |k: u32| {
+            let place = |phase: f64| {
+                let angle = 2.0 * std::f64::consts::PI * f64::from(k) / f64::from(SAMPLES) + phase;
+                0.2 * angle.sin() - 0.2 * phase.sin()
+            };
+            place(p).hypot(place(q))
+        };
+        let greatest = (0..SAMPLES).map(at).fold(0.0, f64::max);
+        let mean = (0..SAMPLES).map(at).sum::<f64>() / f64::from(SAMPLES);
+        for steps in [30, 60, 121] {
+            let file = parsed(&format!(
+                r#"
+name = "reach"
+units = {{ length = "m", angle = "rad" }}
+planar = "xy"
+hardpoints = {{ A = [0, 0], T = [0, 0] }}
+bodies = {{ s = {{}}, q = {{}} }}
+joints.a = {{ type = "translational", bodies = ["ground", "q"], at = "A", axis = "x" }}
+joints.b = {{ type = "translational", bodies = ["q", "s"], at = "A", axis = "y" }}
+drivers.x = {{ joint = "a", law = "0.2*sin(2*pi*t + {p}) - 0.2*sin({p})" }}
+drivers.y = {{ joint = "b", law = "0.2*sin(2*pi*t + {q}) - 0.2*sin({q})" }}
+points.tool = {{ body = "s", at = "T" }}
+measures.reach = {{ type = "expression", expression = "hypot(tool.x, tool.y)" }}
+measures.root = {{ type = "expression", expression = "sqrt(tool.x^2 + tool.y^2)" }}
+measures.beyond = {{ type = "expression", expression = "1 + hypot(tool.x, tool.y)" }}
+metrics.most = {{ of = "reach", take = "max" }}
+metrics.most_of_root = {{ of = "root", take = "max" }}
+metrics.mean = {{ of = "reach", take = "mean" }}
+metrics.most_beyond = {{ of = "beyond", take = "max" }}
+time = {{ end = 1, steps = {steps} }}
+"#
+            ));
+            let found = metrics(&file.model, &Analysis::new(&file.model).unwrap().run());
+            for (metric, expected) in found.iter().zip([greatest, greatest, mean, 1.0 + greatest]) {
+                // Samples miss the extremum by the square of their distance.
+                let apart = metric.value.map(|value| (value - expected).abs());
+                assert!(apart.is_some_and(|d| d < 1e-8), "{p} {q} {steps}: {metric:?} {expected}");
+            }
+        }
+    }
+}

@@ -115,6 +115,11 @@ impl Expression {
         self.evaluate(&number)
     }
 
+    /// True if the result is a magnitude, whose square is smooth where it vanishes.
+    pub(crate) fn is_magnitude(&self) -> bool {
+        self.program.is_magnitude()
+    }
+
     /// The body of [`over`](Self::over), compiled once per scalar type for all callers.
     fn evaluate<T: Real>(&self, number: &dyn Fn(usize) -> T) -> T {
         self.program.at(T::constant(f64::NAN), number)

@@ -120,6 +120,15 @@ impl Program {
         self.waiting.len() == MAX_WAITING
     }
 
+    /// True if the result is a magnitude: a root of a sum of squares, or an absolute value.
+    pub(crate) fn is_magnitude(&self) -> bool {
+        match self.operations.last() {
+            Some(Operation::Two(Binary::Hypot) | Operation::One(Function::Abs | Function::Sqrt)) => true,
+            Some(Operation::Powf(exponent)) => *exponent == 0.5,
+            _ => false,
+        }
+    }
+
     /// Value of the operation at `index` if it is a number.
     pub(crate) fn constant_at(&self, index: usize) -> Option<f64> {
         match self.operations.get(index) {

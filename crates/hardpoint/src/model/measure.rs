@@ -702,7 +702,9 @@ impl MeasureKind {
                 | ReactionPart::MomentAbout(_)
                 | ReactionPart::Torque => &[],
             },
-            Self::Coordinate { .. }
+            Self::Combination { expression } if expression.expression.is_magnitude() => &[0.0],
+            Self::Combination { .. }
+            | Self::Coordinate { .. }
             | Self::Coordinates { .. }
             | Self::Angle { about: Some(_), .. }
             | Self::Orientation { .. }
@@ -713,7 +715,6 @@ impl MeasureKind {
             | Self::Rate { .. }
             | Self::Slope { .. }
             | Self::Dexterity { value: JacobianValue::GreatestGain, .. }
-            | Self::Combination { .. }
             | Self::Clearance { .. }
             | Self::Toe { .. }
             | Self::Camber { .. }

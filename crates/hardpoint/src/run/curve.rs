@@ -135,6 +135,23 @@ impl<T: Real> SampledCurve<'_, T> {
         numbers[..self.orders].iter().take_while(|x| x.value().is_finite()).count()
     }
 
+    /// Numbers of orders at both ends of an interval that are known, without accelerations that the interval does not
+    /// resolve: near a kink they are greater than all rates by far.
+    fn resolved<U: Real>(&self, ends: &[[U; 3]; 2], h: f64) -> [usize; 2] {
+        let known = ends
+            .each_ref()
+            .map(|end| end[..self.orders].iter().take_while(|x| x.value().is_finite()).count());
+        if known != [3, 3] {
+            return known;
+        }
+        let [a, b] = ends.each_ref().map(|end| end.map(|x| x.value()));
+        let rates = a[1].abs() + b[1].abs() + ((b[0] - a[0]) / h).abs();
+        let is_resolved = |end: [f64; 3]| {
+            h * end[2].abs() <= UNRESOLVED * rates || h * h * end[2].abs() <= ROUND_OFF * end[0].abs()
+        };
+        [a, b].map(|end| if is_resolved(end) { 3 } else { 2 })
+    }
+
     /// Interval of a time.
     pub(super) fn interval(&self, t: f64) -> usize {
         let after = self.times[..self.values.len()].partition_point(|end| *end <= t);
@@ -151,7 +168,7 @@ impl<T: Real> SampledCurve<'_, T> {
         let length = self.times[k + 1] - self.times[k];
         let fold = self.fold(k);
         let ends = [k, k + 1].map(|end| self.numbers(end, fold));
-        let known = ends.each_ref().map(|end| self.known_of(end).min(orders));
+        let known = self.resolved(&ends, length).map(|known| known.min(orders));
         Polynomial { from: self.times[k], length, c: Self::coefficients(&ends, length, known), fold }
     }
 
@@ -254,8 +271,7 @@ impl<T: Real> SampledCurve<'_, T> {
             None => [plain(k), plain(k + 1)],
             Some(fold) => [fold.square(plain(k)), fold.square(plain(k + 1))],
         };
-        let known = |end: &[f64; 3]| end[..self.orders].iter().take_while(|x| x.is_finite()).count();
-        Some(match [known(&a), known(&b)] {
+        Some(match self.resolved(&[a, b], h) {
             [1, 1] => [a[0], a[0], a[0], b[0], b[0], b[0]],
             [2, 2] => {
                 let [inner, outer] = [a[0] + h * a[1] / 3.0, b[0] - h * b[1] / 3.0];
@@ -390,6 +406,9 @@ pub(super) fn unknown_change<T: Real>(by: T) -> T {
     let change = by - T::constant(by.value());
     (change * change).sqrt()
 }
+
+/// Factor of the rates in an interval above which the change of the rate by an acceleration is not resolved there.
+const UNRESOLVED: f64 = 1e3;
 
 /// Binomial coefficients C(n, k).
 const CHOOSE: [[f64; 5]; 5] = [
