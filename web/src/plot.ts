@@ -4,7 +4,7 @@ import { css, el, keepFocus, prose, setText, svg } from './dom'
 import { number, pretty, titled } from './format'
 import { abscissaOf, type Content, drawnLines, drawnRange, drawnSteps, type Line } from './content'
 import { decades, nearestStep, padded, positive, stepAt, valueAt, type Curve, withGaps } from './curve'
-import { extent, FEWEST_TICKS, ticks } from './export/axis'
+import { extent, FEWEST_TICKS, ticks, widened } from './export/axis'
 import type { State } from './state'
 import { atLeast, between, moved, type Part, scaled, within, Zoom } from './zoom'
 
@@ -351,7 +351,7 @@ export class Plot {
 
   #findRanges(): { x: Part; y: Part } {
     const { part, upright, logarithmic, equal } = this.content
-    const x = part ?? this.#all()
+    const x = part ?? widened(this.#all())
     const [low, high] = drawnRange(this.content, this.state.report.times) ?? [null, null]
     if (logarithmic) return { x, y: upright ?? decades(low, high) }
     const usual = padded(...reaching(low, high, this.content))

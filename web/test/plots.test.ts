@@ -1,7 +1,7 @@
 import { describe, expect, test } from 'vitest'
 import { type Content, drawnRange, drawnSteps, type Line } from '../src/content'
 import { changeFrom, crossings } from '../src/curve'
-import { ticks } from '../src/export/axis'
+import { linearAxis, ticks } from '../src/export/axis'
 import { measuredOf } from '../src/page/measured'
 
 const curve = (...values: number[]) => Float32Array.from(values)
@@ -45,6 +45,17 @@ describe('a plot over a quantity that goes back and forth along one line', () =>
     const lines = [line(curve(1, 2), curve(0, 1)), { ...line(curve(50, 60), curve(0, 1)), hidden: true }]
     expect(drawnRange({ ...content, lines }, x)).toEqual([1, 2])
     expect(drawnRange({ ...content, lines, part: [0, 0.5] }, x)).toEqual([1, 1.5])
+  })
+})
+
+describe('an axis of a single value', () => {
+  test('has it in the middle, with round numbers on both sides', () => {
+    for (const value of [1, 0.3, -2e6, 0]) {
+      const { at, ticks } = linearAxis([value, value], 0, 100, 4)
+      expect(at(value)).toBeCloseTo(50, 9)
+      expect(ticks.length).toBeGreaterThan(2)
+      expect(ticks.every((tick) => at(tick.value) >= 0 && at(tick.value) <= 100)).toBe(true)
+    }
   })
 })
 

@@ -276,7 +276,10 @@ record! {
         let (data, name) = data;
         let compared: Vec<(&Reading, &ValidatedReading)> = data.measurements.readings.iter().zip(&found.readings)
             .filter_map(|(r, v)| Some((r, v.as_ref()?))).collect();
-        let standard: Vec<f64> = compared.iter().filter(|(_, v)| v.sigma > 0.0).map(|(r, v)| (v.value - r.value) / v.sigma).collect();
+        let standard = |(r, v): &(&Reading, &ValidatedReading)| {
+            Some((v.value - r.value) / v.sigma.filter(|s| *s > 0.0)?)
+        };
+        let standard: Vec<f64> = compared.iter().filter_map(standard).collect();
         let mut outputs: Vec<usize> = compared.iter().map(|(r, _)| r.output).collect();
         outputs.sort_unstable();
         outputs.dedup();
@@ -290,6 +293,8 @@ record! {
     data: String = name.into();
     /// Number of compared readings.
     readings: usize = compared.len();
+    /// Number of these without a predicted standard deviation, as they depend on changes that are not determined.
+    unpredicted: usize = compared.iter().filter(|(_, v)| v.sigma.is_none()).count();
     /// Root mean square of the residuals, in predicted standard deviations, where 1 is expected; `null` if there are
     /// none.
     scatter: Option<f64> = root_mean_square(&standard);
@@ -303,7 +308,7 @@ record! {
     /// Residuals of a measure in data that were not fitted, in its unit.
     ValidatedMeasure::of(of: &CalibrationInputs<'_>, m: usize, compared: &[(&Reading, &ValidatedReading)]) {
         let residuals: Vec<f64> = compared.iter().map(|(r, v)| of.shown(m, v.value - r.value)).collect();
-        let sigmas: Vec<f64> = compared.iter().map(|(_, v)| of.shown(m, v.sigma)).collect();
+        let sigmas: Option<Vec<f64>> = compared.iter().map(|(_, v)| Some(of.shown(m, v.sigma?))).collect();
     }
     /// Name.
     name: String = of.output(m).name.clone();
@@ -317,8 +322,9 @@ record! {
     rms: f64 = root_mean_square(&residuals).unwrap_or_default();
     /// Residual of the largest magnitude.
     largest: f64 = residuals.iter().copied().fold(0.0, |most: f64, r| if r.abs() > most.abs() { r } else { most });
-    /// Predicted root mean square: that of the readings and of the fitted variables.
-    predicted: f64 = root_mean_square(&sigmas).unwrap_or_default();
+    /// Predicted root mean square: that of the readings and of the fitted variables; `null` if a reading depends on
+    /// changes that are not determined.
+    predicted: Option<f64> = sigmas.and_then(|sigmas| root_mean_square(&sigmas));
 }
 
 /// Returns true if a chi square of n degrees of freedom is hardly ever so small, or so large.
@@ -635,7 +641,20 @@ impl CalibrateFacts {
             let scatter = validation.scatter.map_or(String::new(), |s| {
                 format!(", residuals {} of the predicted standard deviations", rounded(s, 3))
             });
-            rows.push(("validated", format!("{}{scatter}", count(validation.readings, "reading"))));
+            let unpredicted = match validation.unpredicted {
+                0 => String::new(),
+                n if self.untold.is_empty() => {
+                    format!(
+                        ", {n} of them without a predicted standard deviation: the fit ended at no optimum"
+                    )
+                }
+                n => format!(
+                    ", {n} of them without a predicted standard deviation: they depend on changes that are not \
+                     determined"
+                ),
+            };
+            let readings = count(validation.readings, "reading");
+            rows.push(("validated", format!("{readings}{unpredicted}{scatter}")));
             for n in validation.not_reached.iter().take(LISTED) {
                 rows.push(("not reached", format!("validation data, line {}: {}", n.line, n.why)));
             }
@@ -726,7 +745,7 @@ impl CalibrateFacts {
                     ("readings", &|m| m.readings.to_string()),
                     ("mean", &|m| with_unit(m.mean, &m.unit)),
                     ("root mean square", &|m| with_unit(m.rms, &m.unit)),
-                    ("predicted", &|m| with_unit(m.predicted, &m.unit)),
+                    ("predicted", &|m| m.predicted.map_or("not determined".into(), |p| with_unit(p, &m.unit))),
                     ("largest", &|m| with_unit(m.largest, &m.unit)),
                 ],
                 self.validation.iter().flat_map(|v| &v.measures),

@@ -104,10 +104,16 @@ record! {
 
 record! {
     /// Metric in one motion.
-    SweptFact::of(swept: &SweepInputs<'_>, k: usize, known: Option<&Distribution>, influences: Vec<InfluenceFact>) {
+    SweptFact::of(
+        swept: &SweepInputs<'_>,
+        k: usize,
+        nominal: f64,
+        known: Option<&Distribution>,
+        influences: Vec<InfluenceFact>,
+    ) {
         let of = swept.sweep.metrics()[k];
         let dimension = swept.dimension(of);
-        let nominal = swept.units().from_si(dimension, swept.sweep.nominal().metrics[k][0]);
+        let nominal = swept.units().from_si(dimension, nominal);
     }
     /// Name.
     name: String = swept.model().metrics[of.metric].name.clone();
@@ -392,6 +398,7 @@ impl SweepInputs<'_> {
         for number in &drawn.numbers {
             drawn.variables.iter_mut().zip(self.variables_of(*number)).for_each(|(c, x)| c.push(x));
         }
+        let (nominal, round_off) = self.sweep.nominal();
         let mut metrics = Vec::new();
         for (k, of) in self.sweep.metrics().iter().enumerate() {
             let values = column(k)?;
@@ -399,11 +406,11 @@ impl SweepInputs<'_> {
             let shown = |x: f64| self.units().from_si(dimension, x);
             let some: Vec<f64> = drawn.numbers.iter().map(|n| shown(values[*n])).collect();
             let indices = match asked.method {
-                SweepMethod::Indices => sobol_indices(&values, asked.ranges.len()),
+                SweepMethod::Indices => sobol_indices(&values, asked.ranges.len(), round_off[k]),
                 _ => vec![None; asked.ranges.len()],
             };
             let influence = |(v, index): (usize, &Option<SobolIndex>)| {
-                let rank = rank_correlation(&drawn.variables[v], &some);
+                let rank = rank_correlation(&drawn.variables[v], &some, shown(round_off[k]));
                 InfluenceFact::of(
                     &file.model.variables[asked.ranges[v].variable.0].name,
                     rank,
@@ -411,7 +418,8 @@ impl SweepInputs<'_> {
                 )
             };
             let influences = indices.iter().enumerate().map(influence).collect();
-            metrics.push(SweptFact::of(self, k, Distribution::of(&values).as_ref(), influences));
+            let known = Distribution::of(&values, round_off[k]);
+            metrics.push(SweptFact::of(self, k, nominal.metrics[k][0], known.as_ref(), influences));
             drawn.metrics.push(some);
         }
         let facts = SweepFacts::of(self, tally, metrics);

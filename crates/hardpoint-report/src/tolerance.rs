@@ -204,8 +204,9 @@ record! {
         let model_shares = &found.contributions[k];
         let mut why = Vec::new();
         if found.is_nonlinear(k) {
-            match of.nonlinearity().filter(|x| x.is_finite()) {
+            match of.nonlinearity() {
                 None => why.push("second derivatives are unknown".to_owned()),
+                Some(part) if part.is_infinite() => why.push("sigma has no first-order part".into()),
                 Some(part) if part > NONLINEAR => {
                     why.push(format!("the second-order part is {} of sigma", percent(part)))
                 }
@@ -235,7 +236,7 @@ record! {
     rss: f64 = shown(of.sigma);
     /// Second-order standard deviation.
     sigma: Option<f64> = of.second.map(|s| shown(s.sigma));
-    /// Second-order part relative to the first-order standard deviation.
+    /// Second-order part relative to the first-order standard deviation; `null` if it is unknown, or that is zero.
     nonlinearity: Option<f64> = of.nonlinearity().filter(|x| x.is_finite());
     /// Worst-case minimum.
     least: ExtremeFact = ExtremeFact::of(&of.worst[0], &shown);
@@ -745,7 +746,11 @@ impl ToleranceFacts {
                 ("RSS", &|m| with_unit(m.rss, &m.unit)),
                 ("2nd order", &|m| optional(m.sigma, &m.unit)),
                 ("RSS error", &|m| m.sampled.as_ref().and_then(|s| s.rss_off).map_or("-".into(), percent)),
-                ("nonlinearity", &|m| m.nonlinearity.map_or("not known".into(), percent)),
+                ("nonlinearity", &|m| match (m.nonlinearity, m.sigma) {
+                    (Some(part), _) => percent(part),
+                    (None, Some(_)) => "no RSS".into(),
+                    (None, None) => "not known".into(),
+                }),
                 ("minimum", &|m| worst(&m.least, &m.unit)),
                 ("maximum", &|m| worst(&m.greatest, &m.unit)),
             ],

@@ -12,6 +12,7 @@
 mod offer;
 mod open;
 mod protocol;
+mod shapes;
 mod study;
 
 use std::ops::ControlFlow;

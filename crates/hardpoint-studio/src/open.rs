@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use hardpoint::model::{HardpointId, Model, ShapeId};
-use hardpoint::run::ShapeDistance;
 use hardpoint::space::Quat;
 use hardpoint::topology::TopologyError;
 use hardpoint::{Analysis, Run, Solution};
@@ -19,11 +18,14 @@ use hardpoint_study::whatif::{add_coordinates, coordinate, variable_named};
 use crate::protocol::{
     Coordinate, DesignReply, DiagnosticMessage, MovableHardpoint, OpenReply, VariableSetting,
 };
+use crate::shapes::ShapesOfDesign;
 use crate::{EngineError, first_case, parse_in_case, parse_model};
 
-/// Maximum number of bisections of the path to a design that cannot be reached; the last step is a thousandth of the
-/// path.
-const HALVINGS: usize = 10;
+/// Part of the path to which the last design before one that cannot be reached is found.
+const NEAREST: f64 = 1.0 / 1024.0;
+/// Part of the path below which designs are no longer solved in search of shapes that pass through each other: a slow
+/// drag has far shorter paths than a mouse that jumps.
+const SHORTEST: f64 = 1.0 / 32.0;
 
 /// OpenModel model.
 #[derive(Debug)]
@@ -43,8 +45,21 @@ pub(crate) struct OpenModel {
     memory: Solution,
     /// Pairs of shapes of all clearances.
     pairs: Vec<[ShapeId; 2]>,
-    /// Values of the last design that shapes could stop, and the pairs that touch in it.
-    touching: Option<(Vec<f64>, Vec<[ShapeId; 2]>)>,
+    /// Shapes of the last design that they could stop.
+    shapes: Option<ShapesOfDesign>,
+}
+
+/// Solved design on the path to another one.
+struct Step {
+    /// Part of the path.
+    part: f64,
+    /// Values of the variables, SI.
+    design: Vec<f64>,
+    solution: Solution,
+    /// Shapes, if they are solid.
+    shapes: Option<ShapesOfDesign>,
+    /// Reason why it cannot be reached.
+    why: Option<DiagnosticMessage>,
 }
 
 impl OpenModel {
@@ -90,11 +105,8 @@ impl OpenModel {
             stop,
         };
         let pairs = file.model.shape_pairs();
-        let (memory, touching) = (Solution::default(), None);
-        Ok((
-            Self { all_cases, file, analysis, nominal, bare, summary, shown, memory, pairs, touching },
-            opened,
-        ))
+        let (memory, shapes) = (Solution::default(), None);
+        Ok((Self { all_cases, file, analysis, nominal, bare, summary, shown, memory, pairs, shapes }, opened))
     }
 
     /// Solves the design with some changes. If it cannot be reached from the solved design `from`, returns the last
@@ -108,90 +120,89 @@ impl OpenModel {
     ) -> Result<DesignReply, EngineError> {
         let target = self.values(change)?;
         let start = from.map(|from| self.values(from)).transpose()?;
-        let apart = match start.as_ref().filter(|_| solid && !self.pairs.is_empty()) {
-            Some(start) => self.pairs_apart(start),
-            None => Vec::new(),
+        let solid = solid && !self.pairs.is_empty();
+        let Some(start) = start else {
+            let mut end = self.step(1.0, target, solid, &[]);
+            let why = end.why.take();
+            return Ok(self.reply(end, why));
         };
-        let (mut solution, mut why) = self.solve_apart(&target, &apart);
-        let mut part = 1.0;
-        let mut design = target.clone();
-        if let (Some(start), Some(_)) = (start, &why) {
-            // Bisects the path for the last admissible design.
-            let (mut low, mut high) = (0.0, 1.0);
-            let on_path = |part: f64| -> Vec<f64> {
-                start.iter().zip(&target).map(|(a, b)| a + part * (b - a)).collect()
-            };
-            let mut reached = None;
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (low + high);
-                self.memory = solution;
-                let (found, stop) = self.solve_apart(&on_path(middle), &apart);
-                solution = found;
-                match stop {
-                    None => {
-                        low = middle;
-                        reached = Some(std::mem::take(&mut solution));
-                    }
-                    Some(stop) => (high, why) = (middle, Some(stop)),
+        let first = solid.then(|| self.shapes_of(&start));
+        let apart = first.as_ref().map_or_else(Vec::new, ShapesOfDesign::pairs_apart);
+        let may_pass = |from: Option<&ShapesOfDesign>, to: Option<&ShapesOfDesign>| {
+            from.zip(to).is_some_and(|(from, to)| apart.iter().any(|pair| from.may_pass(to, *pair)))
+        };
+        let on_path =
+            |part: f64| -> Vec<f64> { start.iter().zip(&target).map(|(a, b)| a + part * (b - a)).collect() };
+        // Designs ahead, the next one last: one that cannot be reached, or may only be reached through a shape, is
+        // approached by halves.
+        let mut ahead = vec![self.step(1.0, target.clone(), solid, &apart)];
+        let mut reached: Option<Step> = None;
+        let mut why = None;
+        while let Some(mut next) = ahead.pop() {
+            let at = reached.as_ref().map_or(0.0, |reached| reached.part);
+            let from = reached.as_ref().map_or(first.as_ref(), |reached| reached.shapes.as_ref());
+            let way = next.part - at;
+            if next.why.is_none() && (way <= SHORTEST || !may_pass(from, next.shapes.as_ref())) {
+                if let Some(former) = reached.replace(next) {
+                    self.memory = former.solution;
+                }
+                continue;
+            }
+            if next.why.is_some() {
+                self.memory = std::mem::take(&mut next.solution);
+                if way <= NEAREST {
+                    why = next.why;
+                    break;
                 }
             }
-            (part, design) = (low, on_path(low));
-            solution = match reached {
-                Some(reached) => reached,
-                None => self.solve(&design).0,
-            };
+            let middle = at + 0.5 * way;
+            let between = self.step(middle, on_path(middle), solid, &apart);
+            ahead.extend([next, between]);
         }
-        let shown = self.shown(&solution, &design);
-        if solid {
-            let touching = self.touching(&design, &solution, &self.pairs);
-            self.touching = Some((design, touching.into_iter().map(|(pair, _)| pair).collect()));
-        }
-        self.memory = solution;
-        Ok(DesignReply { part, design: shown, why })
+        let end = match reached {
+            Some(reached) => reached,
+            None => self.step(0.0, start, solid, &[]),
+        };
+        Ok(self.reply(end, why))
     }
 
-    /// Pairs of shapes that are apart in a design at all output times.
-    fn pairs_apart(&mut self, design: &[f64]) -> Vec<[ShapeId; 2]> {
-        let known = self.touching.take().filter(|(values, _)| values == design);
-        let (_, touching) = known.unwrap_or_else(|| {
-            let (solution, _) = self.solve(design);
-            let touching = self.touching(design, &solution, &self.pairs);
-            self.memory = solution;
-            (design.to_vec(), touching.into_iter().map(|(pair, _)| pair).collect())
-        });
-        self.pairs.iter().copied().filter(|pair| !touching.contains(pair)).collect()
+    /// Reply with a step; its shapes and memory are kept for the next one.
+    fn reply(&mut self, end: Step, why: Option<DiagnosticMessage>) -> DesignReply {
+        let design = self.shown(&end.solution, &end.design);
+        self.memory = end.solution;
+        self.shapes = end.shapes;
+        DesignReply { part: end.part, design, why }
     }
 
-    /// Those of some pairs that touch in a solved design, each with the first output time of that, s.
-    fn touching(
-        &self,
-        design: &[f64],
-        solution: &Solution,
-        pairs: &[[ShapeId; 2]],
-    ) -> Vec<([ShapeId; 2], f64)> {
-        let motion = &solution.motion;
-        let curves = self.analysis.distances(design, motion, pairs, 0..motion.len());
-        let first =
-            |curve: &Vec<ShapeDistance>| curve.iter().find(|at| at.distance[0] < 0.0).map(|at| at.time);
-        pairs.iter().zip(&curves).filter_map(|(pair, curve)| Some((*pair, first(curve)?))).collect()
-    }
-
-    /// Solves a design; the diagnostic reports why its motion ends early, or the pair of shapes that touches in it.
-    fn solve_apart(
-        &mut self,
-        values: &[f64],
-        apart: &[[ShapeId; 2]],
-    ) -> (Solution, Option<DiagnosticMessage>) {
-        let (solution, stop) = self.solve(values);
+    /// Solves a design on the path; `apart` are the pairs that must not touch, by number.
+    fn step(&mut self, part: f64, design: Vec<f64>, solid: bool, apart: &[usize]) -> Step {
+        let (solution, stop) = self.solve(&design);
+        let shapes = solid.then(|| self.shapes_with(&design, &solution));
         let touch = || {
-            let all = self.touching(values, &solution, apart);
-            let ([a, b], time) = all.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
-            let [a, b] = [a, b].map(|shape| &self.file.model.shapes[shape.0].name);
+            let shapes = shapes.as_ref()?;
+            let all = apart.iter().filter_map(|pair| Some((*pair, shapes.first_contact(*pair)?)));
+            let (pair, time) = all.min_by(|a, b| a.1.total_cmp(&b.1))?;
+            let [a, b] = self.pairs[pair].map(|shape| &self.file.model.shapes[shape.0].name);
             let message = format!("`{a}` touches `{b}` at t = {} s beyond this design", rounded(time, 4));
             Some(DiagnosticMessage::plain("HP0705", message, "hide the shapes to move on"))
         };
-        let why = stop.or_else(|| if apart.is_empty() { None } else { touch() });
-        (solution, why)
+        let why = stop.or_else(touch);
+        Step { part, design, solution, shapes, why }
+    }
+
+    /// Shapes of a design, which is solved unless they are known.
+    fn shapes_of(&mut self, design: &[f64]) -> ShapesOfDesign {
+        let known = self.shapes.take().filter(|shapes| shapes.design == design);
+        known.unwrap_or_else(|| {
+            let (solution, _) = self.solve(design);
+            let shapes = self.shapes_with(design, &solution);
+            self.memory = solution;
+            shapes
+        })
+    }
+
+    fn shapes_with(&self, design: &[f64], solution: &Solution) -> ShapesOfDesign {
+        ShapesOfDesign::new(&self.analysis, &self.pairs, design, &solution.motion)
     }
 
     /// Solves another model for comparison. Both models must have the same bodies, measures, metrics and output times.

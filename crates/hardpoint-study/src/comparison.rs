@@ -239,11 +239,7 @@ struct ComparisonBuilder<'a> {
 
 impl<'a> ComparisonBuilder<'a> {
     fn new(model: &'a Model, solution: &'a Solution, d: &'a Difference) -> Self {
-        let span = match &solution.motion.times[..] {
-            [first, .., last] => last - first,
-            _ => 1.0,
-        };
-        let magnitude = Magnitude::of_motion(model, &solution.motion).or_once_in(span);
+        let magnitude = Magnitude::of_settled_motion(model, &solution.motion);
         Self { model, solution, d, magnitude, natural: model.natural_step(d.variable), errors: Vec::new() }
     }
 

@@ -1,11 +1,13 @@
 //! Magnitude of a motion: the reference for its sensitivities and their errors.
 
-use hardpoint::model::{Dimension, Model};
+use hardpoint::model::{Dimension, Metric, Model};
 use hardpoint::motion::Motion;
 
 /// Threshold of a zero change: a natural step of the design ([`natural_step`](hardpoint::model::Model::natural_step))
 /// changes the quantity by less than this fraction of the whole motion.
 const NOTHING: f64 = 1e-10;
+/// Round-off of a metric as a fraction of its value, which may be much greater than the motion suggests.
+const VALUE: f64 = 1e-12;
 
 /// Magnitude of a motion at orders 0, 1 and 2. A mechanism at rest has the magnitude of its size, rotations of 1 rad,
 /// and no rates.
@@ -48,7 +50,7 @@ impl Magnitude {
     /// Replaces orders that are round-off. If a motion is at rest or runs at constant speed over the whole `span`, s,
     /// the next order becomes the one before divided by the span.
     #[must_use]
-    pub fn or_once_in(mut self, span: f64) -> Self {
+    fn or_once_in(mut self, span: f64) -> Self {
         /// An order is round-off if it changes the one before it by less than this fraction over the span.
         const STEADY: f64 = 1e-12;
         for order in 1..3 {
@@ -70,6 +72,21 @@ impl Magnitude {
         let force = self.pushed + self.mass * self.orders[2] * self.size;
         // 1 N if there are no forces.
         order * if force > 0.0 { force } else { 1.0 }.powi(quantity.force.into())
+    }
+
+    /// Magnitude of a complete motion, without orders that are round-off: see [`or_once_in`](Self::or_once_in).
+    pub fn of_settled_motion(model: &Model, motion: &Motion) -> Self {
+        let span = match &motion.times[..] {
+            [first, .., last] => last - first,
+            _ => 1.0,
+        };
+        Self::of_motion(model, motion).or_once_in(span)
+    }
+
+    /// Largest change of a metric over several designs that is still round-off, SI, from the value of one of them.
+    pub fn metric_round_off(&self, model: &Model, metric: &Metric, value: Option<f64>) -> f64 {
+        let of_motion = self.round_off(model.metric_dimension(metric), 0);
+        of_motion.max(VALUE * value.unwrap_or_default().abs())
     }
 
     /// Largest change of the given time derivative of a quantity over a natural step that is still round-off, SI.

@@ -1,3 +1,4 @@
+import { padded } from '../curve'
 import { number } from '../format'
 
 /** From values to pixels, with round numbers on the way. */
@@ -12,8 +13,14 @@ export const FEWEST_TICKS = 3
 /** Number of powers of ten above which only every other one has a label. */
 const MOST_POWERS = 6
 
-/** An axis from `low` at `from` to `high` at `to` with about `count` round numbers. */
-export function linearAxis([low, high]: [number, number], from: number, to: number, count: number): Axis {
+/** A range of an axis; of one value a little to either side, as an axis without width has no steps. */
+export function widened([low, high]: readonly [number, number]): [number, number] {
+  return low === high ? padded(low, high) : [low, high]
+}
+
+/** An axis from the first value at `from` to the second at `to` with about `count` round numbers. */
+export function linearAxis(range: readonly [number, number], from: number, to: number, count: number): Axis {
+  const [low, high] = widened(range)
   const at = (value: number) => from + ((value - low) / (high - low)) * (to - from)
   const step = roundStep((high - low) / count)
   const first = Math.ceil(low / step - 1e-9)

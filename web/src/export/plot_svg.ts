@@ -36,9 +36,7 @@ export function plotSvg(shown: Content, times: Curve, timeUnit: string, paper: P
   const height = HEIGHT + keys.height
   const [first, last] = extent(content.over ? all : [times]) ?? NOTHING
   const whole =
-    first === null || last === null || content.over || first === last
-      ? padded(first, last)
-      : ([first, last] as [number, number])
+    first === null || last === null || content.over ? padded(first, last) : ([first, last] as [number, number])
   const x = linearAxis(content.part ? [...content.part] : whole, LEFT, WIDTH - RIGHT, 8)
   const y = vertical(content, times, bottom)
 

@@ -50,6 +50,8 @@ export interface Subject {
 
 /** Name that the engine gives a design without one. */
 const CHANGED = 'changed'
+/** Message in place of sensitivities of a model without variables. */
+const NO_VARIABLES = 'The model has no design variables: `[design]` of its text adds them.'
 /** Number of sensitivities that are drawn with that of the selected variable. */
 const FEW = 5
 /** Standard deviations between the middle of a tolerance band and its edges. */
@@ -294,6 +296,8 @@ export function sensitivityContent(state: State, subject: Subject): Content {
   const quantity = report.quantities[subject.quantity]
   const selected = report.variables[choice.variable]
   const name = orderedName(quantity, order)
+  // Of a text that has lost its variables, the figures of the former page stay.
+  if (!selected) return { title: `d ${name}`, unit: '', lines: [], message: NO_VARIABLES }
   const all = effects(report, subject.quantity, order)
   const own = all.find(({ variable }) => variable === selected)
   const of = state.outdated ? ` (${state.outdated.toLowerCase()})` : ''

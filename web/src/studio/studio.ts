@@ -569,15 +569,16 @@ export class Studio {
   #offerCases(cases: string[]): void {
     if (cases.length > 0) this.state.case = this.model.case ?? cases[0]
     if (cases.length < 2) return this.#cases.replaceChildren(...this.#separation(cases))
+    const shown = this.model.case ?? cases[0]
     const select = el(
       'select',
       {
         'aria-label': 'Case',
-        title: 'Case',
+        title: `Case ${shown}`,
         'data-testid': 'case',
         onchange: () => void this.#openModel({ ...this.model, case: select.value }, this.state.settings),
       },
-      ...cases.map((name) => el('option', { value: name, selected: name === (this.model.case ?? cases[0]) }, name)),
+      ...cases.map((name) => el('option', { value: name, selected: name === shown }, name)),
     )
     this.#cases.replaceChildren(select)
   }

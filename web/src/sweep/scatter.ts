@@ -222,10 +222,9 @@ class Scatter {
   }
 }
 
-/** From the least to the greatest value; of one value a little to either side. */
+/** From the least to the greatest value. */
 function ends({ values }: SweepAxis): [number, number] {
-  const [low, high] = extent([values]) ?? [0, 1]
-  return low < high ? [low, high] : [low - 0.5, low + 0.5]
+  return extent([values]) ?? [0, 1]
 }
 
 function label(text: string, x: number, y: number, anchor: string): SVGElement {

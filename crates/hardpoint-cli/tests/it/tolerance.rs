@@ -258,3 +258,25 @@ fn a_few_designs_do_not_reject_the_linear_result() {
         assert!(text.contains("too few to check sigma"), "{text}");
     }
 }
+
+#[test]
+fn a_spread_without_a_first_order_part_is_not_unknown() {
+    // The offset alone is a square in the stroke.
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/models/tolerance_curved.toml");
+    let text = std::fs::read_to_string(path).unwrap().replace(", tolerance = 0.02", "");
+    let bench = Bench::with(&[]);
+    bench.put("square.toml", &text);
+    let output = bench.run(&["tolerance", "square.toml", "--samples", "1000", "-o", "out"]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    let json = bench.json("out/summary.json");
+    let stroke = &json["metrics"][0];
+    assert_eq!(
+        (&stroke["rss"], &stroke["nonlinearity"]),
+        (&0.0.into(), &serde_json::Value::Null),
+        "{stroke}"
+    );
+    assert!(stroke["nonlinear"].as_str().unwrap().starts_with("sigma has no first-order part"), "{stroke}");
+    let row = text.lines().find(|l| l.trim_start().starts_with("stroke")).unwrap();
+    assert!(row.contains("no RSS") && !text.contains("not known"), "{text}");
+    assert!(share(stroke, "e") > 0.999 && !text.contains("interactions"), "{text}");
+}

@@ -7,7 +7,9 @@ use std::path::Path;
 use hardpoint::draft::{Section, some_of};
 use hardpoint::joint::Quantity;
 use hardpoint::model::element::ActsOn;
-use hardpoint::model::{BodyId, CaseId, Element, LimitTarget, Model, SweepRange, SweepSettings, VariableId};
+use hardpoint::model::{
+    BodyId, CaseId, DesignVariable, Element, LimitTarget, Model, SweepRange, SweepSettings, VariableId,
+};
 
 use crate::compose::{Origins, Plane, with_origin};
 use crate::values::{DataError, Diagnostic, Diagnostics, Places, Severity, Source, Texts, closest, shown};
@@ -72,6 +74,13 @@ impl ModelFile {
             return 0.0;
         }
         units.to_si(self.model.variables[variable.0].quantity, value) - self.model.nominal_value(variable)
+    }
+
+    /// Variables that the file has; those that were added to the model since, such as coordinates of hardpoints, come
+    /// after them.
+    pub(crate) fn own_variables(&self) -> &[DesignVariable] {
+        let count = self.places.list(Section::Design).len().min(self.model.variables.len());
+        &self.model.variables[..count]
     }
 
     /// Name of the file, as given.

@@ -97,15 +97,16 @@ impl Edit<'_> {
         }
     }
 
-    /// Expression of the length of a rod that keeps it under some variables and follows the hardpoints under others:
-    /// the distance of its ends without the former. A coordinate that the latter do not move is a number. `None` if
-    /// they move none.
+    /// Expression of the length of a rod that keeps it under some variables and follows the hardpoints under others
+    /// of the file: the distance of its ends without the former. A coordinate that the latter do not move is a number.
+    /// `None` if they move none.
     ///
     /// # Errors
     /// Returns the name of an end that variables of both kinds move in a way that the file cannot express.
     fn followed_length(&mut self, joint: &Joint) -> Result<Option<String>, String> {
         let model = &self.file.model;
-        let [fixed, followed] = [true, false].map(|fixed| moved_by(model, |v| v.fixed_length == fixed));
+        let own = self.file.own_variables();
+        let [fixed, followed] = [true, false].map(|fixed| moved_by(model, own, |v| v.fixed_length == fixed));
         let coordinates = |h: HardpointId| [0, 1, 2].map(|axis| Source::Coordinate(h, axis));
         let is_followed = |h: &HardpointId| coordinates(*h).iter().any(|c| followed.contains(c));
         if !joint.at.iter().any(is_followed) {
@@ -170,7 +171,7 @@ impl Edit<'_> {
         }
         let moves =
             |v: &DesignVariable| v.changes.iter().any(|c| matches!(c, Change::Move(c) if c.hardpoint == end));
-        for variable in model.variables.iter().filter(|v| !v.fixed_length && moves(v)) {
+        for variable in self.file.own_variables().iter().filter(|v| !v.fixed_length && moves(v)) {
             let entry = self.entry_of(&variable.name).ok_or(of)?;
             let is_listed = ["move", "mirrored"].into_iter().any(|key| {
                 let list = value_at(&mut self.document, &[Key("design"), Key(&entry), Key(key)]);
@@ -207,9 +208,13 @@ fn number_value(text: &str) -> Value {
 }
 
 /// Parameters and coordinates that some variables change, directly or through formulas.
-fn moved_by(model: &Model, is_meant: impl Fn(&DesignVariable) -> bool) -> BTreeSet<Source> {
+fn moved_by(
+    model: &Model,
+    variables: &[DesignVariable],
+    is_meant: impl Fn(&DesignVariable) -> bool,
+) -> BTreeSet<Source> {
     let mut moved = BTreeSet::new();
-    for change in model.variables.iter().filter(|v| is_meant(v)).flat_map(|v| &v.changes) {
+    for change in variables.iter().filter(|v| is_meant(v)).flat_map(|v| &v.changes) {
         match change {
             Change::Move(c) => {
                 let axes = (0..3).filter(|axis| c.velocity[*axis] != 0.0);

@@ -7,6 +7,7 @@ use hardpoint::model::{Change, DesignVariable, Model, VariableId};
 use hardpoint::run::metrics;
 use hardpoint::{Analysis, Run, Solution};
 use hardpoint_file::{ModelFile, parse, read};
+use hardpoint_study::whatif::add_coordinates;
 
 /// Positions, rates and second rates of the saved file agree with those of the changed design to this part of the
 /// largest of them (or of the mechanism's size, or 1): round-off of the closure, times how near to singular the models
@@ -311,6 +312,35 @@ fn a_rod_that_is_not_made_anew_is_given_its_length() {
     let file = parse(&alone, "rod.toml").unwrap();
     let saved = file.edit(&of(&file, &[("B_kept", 0.004)])).unwrap_or_else(|e| panic!("{e}"));
     assert!(saved.contains("length = 335.41019662496"), "{saved}");
+}
+
+#[test]
+fn coordinates_added_to_the_model_are_not_variables_that_a_rod_follows() {
+    // A what-if and the page add a variable for each coordinate. The saved file does not have them.
+    let alone = ROD
+        .replace("B_y = { move = \"B\", along = \"y\", bounds = [-10, 5.5] } # room\r\n", "")
+        .replace("C_x = { move = \"C\", along = \"x\" }\r\n", "")
+        .replace("C = [\"reach\", 250, 0]", "C = [300, 250, 0]");
+    for (text, expected) in [
+        // The rod is as long as in the text: 335.4101966249685 = sqrt(300^2 + 150^2)
+        (alone.as_str(), "length = 335.41019662496"),
+        (ROD, "length = \"sqrt(C.x^2 + (250 - B.y)^2)\""),
+    ] {
+        let mut file = parse(text, "rod.toml").unwrap_or_else(|e| panic!("{e}"));
+        let own = file.clone();
+        add_coordinates(&mut file.model);
+        assert!(file.model.variable("B.x").is_some());
+        let change = [("B_kept", 0.004)];
+        let saved = file.edit(&of(&file, &change)).unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(saved, own.edit(&of(&own, &change)).unwrap());
+        assert!(saved.contains(expected), "{saved}");
+        // Where such a coordinate moves the end as well, the length is that from (1, 100) to (300, 250).
+        let design = of(&file, &[("B_kept", 0.004), ("B.x", 0.001)]);
+        let saved = file.edit(&design).unwrap_or_else(|e| panic!("{e}"));
+        assert!(saved.contains("B = [5, 100.0, 0]"), "{saved}");
+        let again = parse(&saved, "rod.toml").unwrap_or_else(|e| panic!("{e}\n{saved}"));
+        assert!(apart(0.4, &solved(&file, &design), &solved(&again, &[])) < SAME_MOTION);
+    }
 }
 
 #[test]

@@ -539,8 +539,9 @@ fn validation_data_agree_with_their_predicted_deviations() {
         .zip(&other.readings)
         .map(|(v, r)| {
             let v = v.unwrap();
-            assert!(v.sigma >= 2e-5);
-            (v.value - r.value) / v.sigma
+            let sigma = v.sigma.expect("all variables are determined");
+            assert!(sigma >= 2e-5);
+            (v.value - r.value) / sigma
         })
         .collect();
     let mean_square = standard.iter().map(|z| z * z).sum::<f64>() / 200.0;
@@ -637,5 +638,38 @@ fn a_group_of_variables_with_own_priors_adds_no_degrees_of_freedom() {
         let found = fit(&model, &measured);
         // n readings and p independent priors determine three variables.
         assert_eq!(found.certainty.freedom, measured.readings.len() + independent - 3, "{priors}");
+    }
+}
+
+#[test]
+fn the_standard_deviation_along_an_oblique_direction_is_that_of_the_prior() {
+    // x = a + 2 b - c and y = b + c are read, and a is known before: with a, b follows by -1/3 and c by 1/3.
+    const PRIOR: f64 = 1e-6;
+    let model = linear("mm", 1.0, ["a", "b", "c"], "[calibrate.variables]\na = 1e-3");
+    let postures: Vec<Vec<f64>> = (0..4).map(|k| vec![f64::from(k) * 1e-3]).collect();
+    let measured = readings(&model, &[0.0; 3], &postures, &[0, 1], 1e-4, &mut || 0.0);
+    let found = fit(&model, &measured);
+    let [change] = &found.certainty.by_prior[..] else { panic!("{:?}", found.certainty.by_prior) };
+    let [a, b, c] = change.direction[..] else { panic!("{change:?}") };
+    assert!(close(b, -a / 3.0, ENDED, a.abs()) && close(c, a / 3.0, ENDED, a.abs()), "{change:?}");
+    assert!(close(change.sigma.unwrap() * a.abs(), PRIOR, ENDED, PRIOR), "{change:?}");
+}
+
+#[test]
+fn readings_that_depend_on_undetermined_changes_have_no_prediction() {
+    // One reading does not determine the three lengths.
+    let model = model_of(CRANK);
+    let at = |angle: f64, noise: f64| {
+        readings(&model, &[1e-3, 0.0, 0.0], &[vec![angle]], &[0], 1e-5, &mut || noise)
+    };
+    let measured = at(0.3, 0.0);
+    for (angle, predicted) in [(0.3, Some(2.0_f64.sqrt() * 1e-5)), (0.9, None)] {
+        let other = at(angle, 0.1);
+        let overrides = Overrides { validation: Some(&other), ..Overrides::default() };
+        let found = calibrated(&model, &Request::of(&model, &measured, &overrides).unwrap()).unwrap();
+        assert_eq!(found.certainty.unidentifiable.len(), 2);
+        let sigma = found.validation.unwrap().readings[0].unwrap().sigma;
+        assert_eq!(sigma.is_some(), predicted.is_some(), "{angle}: {sigma:?}");
+        assert!(sigma.zip(predicted).is_none_or(|(a, b)| close(a, b, ENDED, b)), "{angle}: {sigma:?}");
     }
 }

@@ -530,3 +530,74 @@ v = { value = 1, unit = "number", bounds = [-2, 3] }
     let design = &search.found.as_ref().unwrap().design;
     assert!(design.iter().all(|change| (change - 0.2).abs() < 1e-5), "{design:?}");
 }
+
+/// A slider-crank with a hardpoint that nothing uses, and these goals.
+fn slider_crank(optimize: &str) -> ModelFile {
+    let text = format!(
+        r#"
+name = "slider-crank"
+units = {{ length = "mm", angle = "deg" }}
+planar = "xy"
+hardpoints = {{ A = [0, 0], B = [0, "r"], C = ["sqrt(l^2-(r-e)^2)", "e"], Z = ["unused", 50] }}
+bodies = {{ ground = ["A"], crank = ["A", "B"], rod = ["B", "C"], slider = {{}} }}
+joints.wrist = {{ type = "revolute", bodies = ["rod", "slider"], at = "C" }}
+joints.slide = {{ type = "translational", bodies = ["ground", "slider"], at = "C", axis = "x" }}
+drivers.motor = {{ joint = "A", law = "-360*t" }}
+points.S = {{ body = "slider", at = "C" }}
+measures.x = {{ type = "position", point = "S", along = "x" }}
+metrics.stroke = {{ of = "x", take = "range" }}
+metrics.change = {{ of = "x", take = "change" }}
+time = {{ end = 1, steps = 36 }}
+[parameters]
+r = {{ value = 40, unit = "length", bounds = [20, 60] }}
+l = {{ value = 120, unit = "length", bounds = [90, 160] }}
+e = {{ value = 8, unit = "length", bounds = [-20, 20] }}
+unused = {{ value = 1, unit = "length", bounds = [0, 10] }}
+[optimize]
+{optimize}
+"#
+    );
+    hardpoint_file::parse(&text, "slider_crank.toml").unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// Over a whole turn the slider returns to its place, so that the change is zero up to round-off in every design.
+#[test]
+fn a_goal_that_is_constant_up_to_round_off_moves_nothing() {
+    for (goal, starts, status) in [
+        ("{}", 1, Status::NoEffect),
+        ("{}", 6, Status::NoEffect),
+        ("{ target = 5 }", 1, Status::NoEffect),
+        ("{ target = 0 }", 6, Status::Optimal),
+    ] {
+        let file = slider_crank(&format!("starts = {starts}\ngoals.change = {goal}"));
+        let settings = asked(&file);
+        let found = searched(&file, &settings);
+        let search = best(&found);
+        assert_eq!((search.status, found.best), (status, Some(0)), "{goal} {starts}");
+        assert_eq!(search.optimality.met, status == Status::Optimal, "{goal} {starts}");
+        assert!(search.optimality.binding.is_empty(), "{goal} {starts}");
+        let mut design = search.found.as_ref().unwrap().design.iter();
+        assert!(design.all(|change| change.abs() < 1e-15), "{goal} {starts}");
+        let optima = found.optima(&file.model, &settings).len();
+        assert_eq!(optima, usize::from(status == Status::Optimal), "{goal} {starts}");
+    }
+    // Limits are kept nevertheless.
+    let file = slider_crank("goals.change = {}\nlimits.stroke = { metric = \"stroke\", max = 60 }");
+    let search = searched(&file, &asked(&file)).searches.swap_remove(0);
+    assert_eq!(search.status, Status::NoEffect);
+    assert!(search.found.unwrap().limits[0].2 < 60e-3 * (1.0 + 1e-6));
+}
+
+/// Variables that no goal depends on keep their nominal values in every optimum, and do not distinguish optima.
+#[test]
+fn variables_without_effect_make_no_optima() {
+    let file = slider_crank("starts = 8\nvariables = [\"r\", \"unused\"]\ngoals.stroke = { target = 90 }");
+    let settings = asked(&file);
+    let found = searched(&file, &settings);
+    let optima = found.optima(&file.model, &settings);
+    assert_eq!((optima.len(), optima.concat().len()), (1, 8), "{optima:?}");
+    for search in &found.searches {
+        assert_eq!(search.idle, [false, true]);
+        assert!(search.found.as_ref().unwrap().design[3].abs() < 1e-15);
+    }
+}

@@ -8,7 +8,7 @@ use hardpoint::model::{Model, SweepMethod, SweepSettings};
 use hardpoint::run::metrics;
 use hardpoint::topology::Formulation;
 use hardpoint_file::{ModelFile, parse};
-use hardpoint_study::sweep::{self, Request, Sweep, sobol_indices};
+use hardpoint_study::sweep::{self, Distribution, Request, Sweep, rank_correlation, sobol_indices};
 use hardpoint_study::{BLOCK, Motions};
 
 /// A slider-crank: the slider's place over the crank's angle is `x = r cos a + sqrt(l^2 - (r sin a - e)^2)`.
@@ -148,7 +148,7 @@ fn indices_of_a_mechanism_are_those_of_its_closed_form() {
         SweepSettings { method: SweepMethod::Indices, samples: 1024, ..SweepSettings::of_bounds(&model) };
     let values: Vec<f64> =
         swept_from(&model, &asked, 0, 2).into_iter().flat_map(|b| b.metrics[0].clone()).collect();
-    let found = sobol_indices(&values, 3);
+    let found = sobol_indices(&values, 3, 0.0);
     // Midpoints of that many slices of every range: the error of a variance falls with their square, here to 1e-3 of
     // it.
     const SLICES: usize = 40;
@@ -275,4 +275,39 @@ fn broken_lists_of_designs() {
     insta::with_settings!({ snapshot_path => "../snapshots", prepend_module_to_snapshot => false, omit_expression => true }, {
         insta::assert_snapshot!("broken_lists_of_designs", texts);
     });
+}
+
+#[test]
+fn a_metric_that_does_not_vary_has_no_rank_correlations() {
+    // A tracer point varies, and with it nothing of the rocker.
+    let model = file(
+        r#"
+name = "tracer"
+units = { length = "mm", angle = "deg" }
+planar = "xy"
+hardpoints = { A = [0, 0], B = [30, 10], C = [95, 58], D = [110, -5], P = [60, 60] }
+bodies = { ground = ["A", "D"], crank = ["A", "B"], coupler = ["B", "C", "P"], rocker = ["C", "D"] }
+drivers.motor = { joint = "A", law = "360*t" }
+design.P = { move = "P", along = "x", bounds = [-5, 5] }
+measures.psi = { type = "coordinate", joint = "D" }
+metrics.height = { of = "P.y", take = "max" }
+metrics.greatest = { of = "psi", take = "max" }
+time = { end = 1, steps = 12 }
+"#,
+    )
+    .model;
+    let asked = SweepSettings { samples: 100, ..SweepSettings::of_bounds(&model) };
+    let blocks = swept_from(&model, &asked, 0, 1);
+    let models = model.motions();
+    let motions = Motions::of(&models, Formulation::Relative).unwrap();
+    let request = Request { settings: asked };
+    let sweep = Sweep::new(&model, &motions, &[0], &request).unwrap();
+    let (_, round_off) = sweep.nominal();
+    let variable: Vec<f64> = (0..sweep.plan().count()).map(|k| sweep.plan().swept(k)[0]).collect();
+    for (k, varies) in [true, false].into_iter().enumerate() {
+        let values: Vec<f64> = blocks.iter().flat_map(|b| b.metrics[k].clone()).collect();
+        let rank = rank_correlation(&variable, &values, round_off[k]);
+        let sigma = Distribution::of(&values, round_off[k]).unwrap().sigma;
+        assert_eq!((rank.is_some(), sigma > 0.0), (varies, varies), "{rank:?} {sigma}");
+    }
 }

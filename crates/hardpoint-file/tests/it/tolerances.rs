@@ -841,3 +841,106 @@ time = { end = 1.0, steps = 24 }
         assert!((angle - expected).abs() < 1e-4, "{angle} instead of {expected}");
     }
 }
+
+/// A slider with a point whose coordinates in mm are functions of a and b, each of tolerance 0.1.
+fn curved(x: &str, y: &str, more: &str) -> ModelFile {
+    model(&format!(
+        r#"
+name = "curved"
+units = {{ length = "mm", angle = "deg" }}
+planar = "xy"
+parameters = {{ a = {{ value = 0, tolerance = 0.1 }}, b = {{ value = 0, tolerance = 0.1 }} }}
+hardpoints.A = [0, 0]
+bodies.slider = {{}}
+joints.slide = {{ type = "translational", bodies = ["ground", "slider"], at = "A", axis = "x" }}
+drivers.motor = {{ joint = "slide", law = "t" }}
+points.Q = {{ body = "slider", at = ["{x}", "{y}"] }}
+metrics.x = {{ of = "Q.x", take = "value", at = 0 }}
+metrics.y = {{ of = "Q.y", take = "value", at = 0 }}
+time = {{ end = 1, steps = 1 }}
+[tolerance]
+{more}
+"#
+    ))
+}
+
+/// Contributions to a metric, and the part that is due to interactions.
+fn contributions(file: &ModelFile, found: &ToleranceResult, metric: &str) -> (Vec<f64>, Option<f64>) {
+    let k = found.metrics.iter().position(|m| file.model.metrics[m.metric].name == metric).unwrap();
+    (found.contributions[k].shares.clone(), found.contributions[k].together)
+}
+
+fn has_no_spread(file: &ModelFile, found: &ToleranceResult, metric: &str) {
+    let k = found.metrics.iter().position(|m| file.model.metrics[m.metric].name == metric).unwrap();
+    let (of, drawn) = (&found.metrics[k], &sampled(found).metrics[k]);
+    assert_eq!((of.sigma, of.second.unwrap().sigma, drawn.sigma), (0.0, 0.0, [0.0; 2]), "{metric}");
+    assert!(!found.is_nonlinear(k) && !found.differs_from_samples(k), "{metric}");
+    let (shares, together) = contributions(file, found, metric);
+    assert!(shares.iter().all(|share| *share == 0.0) && together.is_none(), "{metric}: {shares:?}");
+}
+
+#[test]
+fn metrics_that_do_not_depend_on_the_design_have_no_spread() {
+    // A tracer point varies, and with it nothing of the rocker.
+    let file = model(
+        r#"
+name = "tracer"
+units = { length = "mm", angle = "deg" }
+planar = "xy"
+hardpoints = { A = [0, 0], B = [30, 10], C = [95, 58], D = [110, -5], P = [60, 60] }
+bodies = { ground = ["A", "D"], crank = ["A", "B"], coupler = ["B", "C", "P"], rocker = ["C", "D"] }
+drivers.motor = { joint = "A", law = "360*t" }
+design.P = { move = "P", along = "xy", tolerance = 0.2 }
+measures.y = { type = "position", point = "P", along = "y" }
+measures.psi = { type = "coordinate", joint = "D" }
+metrics.height = { of = "y", take = "range" }
+metrics.greatest = { of = "psi", take = "max" }
+metrics.swing = { of = "psi", take = "range" }
+metrics.angle = { of = "psi", take = "value", at = 0.3 }
+tolerance.samples = 1500
+time = { end = 1, steps = 12 }
+"#,
+    );
+    let found = examined(&file, |_| ());
+    for metric in ["greatest", "swing", "angle"] {
+        has_no_spread(&file, &found, metric);
+    }
+    let shares: f64 = contributions(&file, &found, "height").0.iter().sum();
+    near(shares, 1.0, 1e-9);
+    // A sum of two variables with the correlation -1 is constant.
+    let pair = "samples = 1500\ncorrelations.ab = { between = [\"a\", \"b\"], coefficient = -1 }";
+    let file = curved("10 + a + b", "a - b", pair);
+    let found = examined(&file, |_| ());
+    has_no_spread(&file, &found, "x");
+    near(spread(&file, &found, "y").sigma, 2.0 * 0.1e-3 / 3.0, 1e-9);
+}
+
+#[test]
+fn one_variable_has_no_interactions() {
+    let file = curved("10 + a^2", "a^3 + 1e-3*a", "");
+    for samples in [1000, 4000] {
+        let found = examined(&file, |asked| asked.samples = samples);
+        // The RSS of a square is 0, and the second derivatives are known.
+        assert_eq!(spread(&file, &found, "x").nonlinearity(), Some(f64::INFINITY));
+        for metric in ["x", "y"] {
+            let (shares, together) = contributions(&file, &found, metric);
+            assert!(
+                shares[0] > 0.999 && together.unwrap() < 1e-3,
+                "{samples} {metric}: {shares:?} {together:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_worst_case_without_first_and_second_derivatives_is_in_order() {
+    for (function, expected) in
+        [("b^3", [-1e-6, 1e-6]), ("-b^3", [-1e-6, 1e-6]), ("b^4", [0.0, 1e-7]), ("-b^4", [-1e-7, 0.0])]
+    {
+        let file = curved("10 + a", function, "");
+        let found = examined(&file, |asked| asked.samples = 0);
+        for (extreme, expected) in spread(&file, &found, "y").worst.iter().zip(expected) {
+            assert!((extreme.exact.unwrap() - expected).abs() < 1e-15, "{function}: {extreme:?}");
+        }
+    }
+}

@@ -1,7 +1,7 @@
 //! Accuracy of the fitted variables: covariance, and changes that cannot be identified.
 
+use super::BoundSide;
 use super::fit::{FitWorkspace, SearchResult, information};
-use super::{BoundSide, Status};
 use hardpoint_search::{dot, independent};
 
 /// A direction with a standard deviation of more natural steps than this (about the mechanism's size) is not reported.
@@ -56,11 +56,17 @@ pub(super) struct Directions {
     pub reported: Vec<(Vec<f64>, f64)>,
     /// Unreported directions, with their standard deviations if they have any.
     pub unidentifiable: Vec<(Vec<f64>, Option<f64>)>,
-    /// Directions that the priors determine, unit vectors.
-    pub by_prior: Vec<Vec<f64>>,
+    /// Directions that the priors determine, with their standard deviations.
+    pub by_prior: Vec<(Vec<f64>, f64)>,
 }
 
 impl Directions {
+    /// True if a quantity with these derivatives does not depend on unreported directions.
+    pub fn determine(&self, g: &[f64]) -> bool {
+        let size = dot(g, g).sqrt();
+        self.unidentifiable.iter().all(|(v, _)| dot(g, v).abs() <= PART * size)
+    }
+
     pub fn covariance(&self, n: usize) -> Vec<Vec<f64>> {
         let entry = |i: usize, j: usize| self.reported.iter().map(|(v, s)| v[i] * v[j] * s * s).sum();
         (0..n).map(|i| (0..n).map(|j| entry(i, j)).collect()).collect()
@@ -84,13 +90,20 @@ impl FitWorkspace<'_> {
                 continue;
             }
             if !self.priors.is_empty() && information(&search.at, &search.weights, &v) < OF_READINGS * s * s {
-                by_prior.push(v.iter().map(|x| x / length).collect());
+                by_prior.push((v.iter().map(|x| x / length).collect::<Vec<f64>>(), sigma * length));
             }
             directions.reported.push((v, sigma));
         }
-        directions.by_prior = few_at_a_time(by_prior);
+        let with_sigma = |(w, pivot): (Vec<f64>, usize)| {
+            // The part of w in a change of this space is that of the pivot, where the others are zero.
+            let variance: f64 = by_prior.iter().map(|(v, s)| (v[pivot] * s).powi(2)).sum();
+            let sigma = variance.sqrt() / w[pivot].abs();
+            (w, sigma)
+        };
+        let few = few_at_a_time(by_prior.iter().map(|(v, _)| v.clone()).collect());
+        directions.by_prior = few.into_iter().map(with_sigma).collect();
         let nothing = few_at_a_time(found.nothing);
-        directions.unidentifiable.extend(nothing.into_iter().map(|v| (v, None)));
+        directions.unidentifiable.extend(nothing.into_iter().map(|(v, _)| (v, None)));
         directions
     }
 
@@ -99,7 +112,7 @@ impl FitWorkspace<'_> {
         let n = self.parameters.len();
         let unidentifiable_part =
             |k: usize| directions.unidentifiable.iter().map(|(v, _)| v[k].abs()).fold(0.0, f64::max);
-        let is_off = matches!(search.status, Status::Stuck | Status::Diverged);
+        let is_off = !search.status.has_covariance();
         let in_steps = match is_off {
             true => vec![vec![f64::NAN; n]; n],
             false => directions.covariance(n),
@@ -127,12 +140,10 @@ impl FitWorkspace<'_> {
         // Estimated from the residuals of the readings alone
         let scatter =
             scatter.map(|s| if self.has_sigmas || self.priors.is_empty() { s } else { search.scale });
-        let spread = |v: &[f64]| {
-            let cv: Vec<f64> = in_steps.iter().map(|row| dot(row, v)).collect();
-            (dot(&cv, v) / dot(v, v)).max(0.0).sqrt()
-        };
-        let by_prior =
-            directions.by_prior.iter().map(|v| unidentifiable(&(v.clone(), (!is_off).then(|| spread(v)))));
+        let by_prior = directions
+            .by_prior
+            .iter()
+            .map(|(v, sigma)| unidentifiable(&(v.clone(), (!is_off).then_some(*sigma))));
         let prior_sigmas =
             self.priors.sigmas(n).into_iter().zip(&self.steps).map(|(s, step)| Some(s? * step));
         Certainty {
@@ -150,8 +161,9 @@ impl FitWorkspace<'_> {
     }
 }
 
-/// Basis of the same space with as few variables per vector as possible, by row reduction.
-fn few_at_a_time(mut rows: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+/// Basis of the same space with as few variables per vector as possible, by row reduction: each vector with its pivot,
+/// a variable that no other vector has.
+fn few_at_a_time(mut rows: Vec<Vec<f64>>) -> Vec<(Vec<f64>, usize)> {
     let mut pivots: Vec<usize> = Vec::new();
     for k in 0..rows.len() {
         let free = (0..rows[k].len()).filter(|j| !pivots.contains(j));
@@ -175,5 +187,5 @@ fn few_at_a_time(mut rows: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
         let size = row.iter().map(|x| x * x).sum::<f64>().sqrt();
         row.iter_mut().for_each(|x| *x = if x.abs() < PART * size { 0.0 } else { *x / size });
     }
-    rows
+    rows.into_iter().zip(pivots).collect()
 }

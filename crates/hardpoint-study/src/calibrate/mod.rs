@@ -95,6 +95,16 @@ pub enum Status {
     Interrupted,
 }
 
+impl Status {
+    /// True if the formula of the covariance, that of an optimum, is valid at the end.
+    pub(super) fn has_covariance(self) -> bool {
+        match self {
+            Self::Found | Self::IterationLimit | Self::Interrupted => true,
+            Self::Stuck | Self::Diverged => false,
+        }
+    }
+}
+
 /// Parameter that is fitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FittedParameter {

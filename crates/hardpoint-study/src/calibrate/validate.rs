@@ -24,8 +24,9 @@ pub struct ValidatedReading {
     /// Value of the fitted design, with the fitted offset.
     pub value: f64,
     /// Predicted standard deviation of the difference: `sqrt(s^2 + g' C g)` with the standard deviation s of the
-    /// reading, the derivatives g of its value and the covariance C of the parameters.
-    pub sigma: f64,
+    /// reading, the derivatives g of its value and the covariance C of the parameters. `None` if the value depends on
+    /// changes that the fit does not determine, or the fit has no covariance.
+    pub sigma: Option<f64>,
 }
 
 impl FitWorkspace<'_> {
@@ -57,7 +58,9 @@ impl FitWorkspace<'_> {
                 let of_fit: f64 = directions.reported.iter().map(|(v, s)| (dot(&g, v) * s).powi(2)).sum();
                 let own = reading.sigma.unwrap_or(if self.has_sigmas { 0.0 } else { search.scale });
                 let sigma = (own * own + of_fit).sqrt();
-                (value.is_finite() && sigma.is_finite()).then_some(ValidatedReading { value, sigma })
+                let is_known = search.status.has_covariance() && directions.determine(&g);
+                let compared = ValidatedReading { value, sigma: is_known.then_some(sigma) };
+                (value.is_finite() && sigma.is_finite()).then_some(compared)
             });
             found.readings.push(compared);
         }

@@ -60,6 +60,8 @@ const RESTING: f64 = 1e-13;
 /// Objectives with a relative difference below this are equal to round-off; the design with the smaller optimality
 /// residual is then the better one.
 const THE_SAME: f64 = 1e-12;
+/// Change of a limit over the bounds of a variable, as a fraction of its scale, that is still round-off.
+const LIMIT_ROUND_OFF: f64 = 1e-10;
 /// Relative difference of objectives below which the search with the smallest optimality residual is the best one.
 const AS_GOOD: f64 = 1e-9;
 /// An optimum of another assembly or sense must be better than those of the model's own by this fraction.
@@ -160,6 +162,8 @@ pub struct SearchResult {
     /// Contribution of each searched variable to the change of the objective: the sum over all steps of mean gradient
     /// times step.
     pub work: Vec<f64>,
+    /// True for each searched variable that changes no goal and no limit at any design of the search.
+    pub idle: Vec<bool>,
     /// Designs that could not be evaluated.
     pub refused: Vec<FailedDesign>,
     /// Cost of the search.
@@ -327,7 +331,17 @@ fn best(searches: &[SearchResult]) -> Option<usize> {
     let rank = |k: &usize| {
         let assessment = found(k).expect("only those that found something are ranked");
         let kept = assessment.violation <= KEPT;
-        (!kept, if kept { assessment.objective } else { assessment.violation })
+        let objective = match searches[*k].status {
+            // Objectives without effects differ by round-off.
+            Status::NoEffect => 0.0,
+            Status::Optimal
+            | Status::Stuck
+            | Status::LimitsNotKept
+            | Status::IterationLimit
+            | Status::Interrupted
+            | Status::NoStart => assessment.objective,
+        };
+        (!kept, if kept { objective } else { assessment.violation })
     };
     let order = |a: &usize, b: &usize| {
         let ([a, b], [x, y]) = ([rank(a).0, rank(b).0], [rank(a).1, rank(b).1]);
@@ -413,12 +427,15 @@ fn search(
         optimality: Optimality { residual: f64::INFINITY, ..Optimality::default() },
         iterations: Vec::new(),
         work: vec![0.0; n],
+        idle: vec![true; n],
         refused: Vec::new(),
         cost: StudyCost::default(),
     };
     if let Some((start, point)) = point {
         let mut run = Descent::new(problem, &memory, &start, point);
         run.go(&mut search, tell);
+        run.reset_idle();
+        search.idle = run.idle();
         search.found = Some(assess(problem, &run.best, &run.scales));
         search.optimality = run.optimality(&run.best);
         if search.optimality.vanishes {
@@ -430,6 +447,24 @@ fn search(
         memory.refused.take().into_iter().map(|(design, why)| failed_design(design, why)).collect();
     search.cost = memory.cost.take();
     search
+}
+
+/// True if no goal depends on any variable: all derivatives are round-off, and not at the start only, which may be a
+/// symmetric design.
+fn has_no_effect(problem: &Problem<'_>, memory: &Memory<'_>, point: &Point) -> bool {
+    if !point.is_constant(problem) {
+        return false;
+    }
+    let here = problem.parts(&point.design);
+    let Some(other) = [1, 2].map(|k| start(problem, k)).into_iter().find(|other| *other != here) else {
+        return true;
+    };
+    let is_constant = |halvings: i32| {
+        let parts = other.iter().zip(&here);
+        let parts: Vec<f64> = parts.map(|(a, b)| b + 0.5_f64.powi(halvings) * (a - b)).collect();
+        memory.at(&parts, |found| found.as_ref().ok().map(|point| point.is_constant(problem)))
+    };
+    (0..HALVINGS).find_map(is_constant).unwrap_or(false)
 }
 
 /// State of a search.
@@ -448,6 +483,10 @@ struct Descent<'p> {
     is_curved: bool,
     /// Number of iterations at which a search ends that only confirms its result.
     confirms_until: Option<usize>,
+    /// True if no goal depends on any variable.
+    has_no_effect: bool,
+    /// Largest effect of every variable on goals and limits so far, as a multiple of round-off.
+    effects: Vec<f64>,
 }
 
 impl<'p> Descent<'p> {
@@ -458,18 +497,51 @@ impl<'p> Descent<'p> {
             scales: limit_scales(problem, &point),
             steepest: by_parts.fold(0.0, f64::max),
             at: start.to_vec(),
-            here: point.clone(),
-            best: point,
             ran_out: false,
             is_curved: false,
             confirms_until: None,
+            has_no_effect: has_no_effect(problem, memory, &point),
+            effects: vec![0.0; start.len()],
+            here: point.clone(),
+            best: point,
             problem,
             memory,
         }
     }
 
     fn optimality(&self, point: &Point) -> Optimality {
-        Optimality::of(self.problem, point, &self.scales, self.steepest)
+        let optimality = Optimality::of(self.problem, point, &self.scales, self.steepest);
+        if !self.has_no_effect {
+            return optimality;
+        }
+        // The gradient and its balance are round-off.
+        let met = optimality.met || point.is_round_off();
+        Optimality { residual: 0.0, left_of_start: 0.0, met, binding: Vec::new(), ..optimality }
+    }
+
+    /// Variables without effect on goals and limits so far.
+    fn idle(&self) -> Vec<bool> {
+        self.effects.iter().map(|effect| *effect <= 1.0).collect()
+    }
+
+    /// Returns variables without effect to their nominal values, from which another start has moved them.
+    fn reset_idle(&mut self) {
+        let nominal = self.problem.parts(&vec![0.0; self.problem.model.variables.len()]);
+        let mut parts = self.problem.parts(&self.best.design);
+        let mut is_moved = false;
+        for ((part, nominal), _) in parts.iter_mut().zip(nominal).zip(self.idle()).filter(|(_, idle)| *idle) {
+            is_moved |= (*part - nominal).abs() > RESTING;
+            *part = nominal;
+        }
+        if !is_moved {
+            return;
+        }
+        let Some(point) = self.memory.at(&parts, |found| found.as_ref().ok().cloned()) else { return };
+        let [reset, best] = [&point, &self.best].map(Point::objective);
+        let is_as_good = reset - best <= AS_GOOD * best.abs() || self.optimality(&point).met;
+        if is_as_good && self.violation(&point) <= self.violation(&self.best).max(KEPT) {
+            self.best = point;
+        }
     }
 
     /// True if a search can end at a point.
@@ -477,6 +549,19 @@ impl<'p> Descent<'p> {
         let Optimality { residual, left_of_start, vanishes, .. } = self.optimality(point);
         let is_flat = residual < OPTIMAL && (residual < SHARP || left_of_start < SHARP);
         self.violation(point) <= KEPT && (is_flat || vanishes && self.confirms_until.is_none())
+    }
+
+    /// Effect of every variable on the limits, as [`Point::effects`] on the goals.
+    fn limit_effects(&self, point: &Point) -> Vec<f64> {
+        let rows = point.limits.iter().map(|row| (row.of, &row.d));
+        let ends = point.spreads.iter().flat_map(|s| s.ends.iter().flat_map(|e| &e.d).map(|d| (s.of, d)));
+        let mut effects = vec![0.0_f64; self.problem.bounds.len()];
+        for (of, d) in rows.chain(ends) {
+            for (effect, (d, [low, high])) in effects.iter_mut().zip(d.iter().zip(&self.problem.bounds)) {
+                *effect = effect.max((d * (high - low)).abs() / (LIMIT_ROUND_OFF * self.scales[of]));
+            }
+        }
+        effects
     }
 
     fn violation(&self, point: &Point) -> f64 {
@@ -521,6 +606,9 @@ impl<'p> Descent<'p> {
 
     fn go(&mut self, search: &mut SearchResult, tell: &mut dyn FnMut(&Iteration)) {
         self.note(search, None, tell);
+        if self.has_no_effect && self.violation(&self.here) <= KEPT {
+            return;
+        }
         let squares = self.here.is_squares();
         let mut idle = 0;
         for run in 0..=AGAIN {
@@ -695,12 +783,15 @@ impl<'p> Descent<'p> {
 
     /// Records an iteration, given the previous point.
     fn note(
-        &self,
+        &mut self,
         search: &mut SearchResult,
         before: Option<(Vec<f64>, Point)>,
         tell: &mut dyn FnMut(&Iteration),
     ) {
         let n = self.at.len();
+        let effects = self.here.effects(self.problem).into_iter().zip(self.limit_effects(&self.here));
+        let known = self.effects.iter_mut().zip(effects);
+        known.for_each(|(known, (goals, limits))| *known = known.max(goals).max(limits));
         let mut step = 0.0;
         let mut most = None;
         if let Some((at, point)) = &before {
@@ -729,29 +820,12 @@ impl<'p> Descent<'p> {
         search.iterations.push(iteration);
     }
 
-    /// True if no goal depends on any variable, although not all are met: all derivatives vanish, and not at the best
-    /// design only, which may be a symmetric one.
-    fn has_no_effect(&self, search: &SearchResult) -> bool {
-        if search.optimality.met || !self.best.is_constant(self.problem) {
-            return false;
-        }
-        let best = self.problem.parts(&self.best.design);
-        let other = |halvings: i32| {
-            let parts = start(self.problem, 1).into_iter().zip(&best);
-            let parts: Vec<f64> = parts.map(|(a, b)| b + 0.5_f64.powi(halvings) * (a - b)).collect();
-            self.memory.at(&parts, |found| found.as_ref().ok().map(|point| point.is_constant(self.problem)))
-        };
-        (0..HALVINGS).find_map(other).unwrap_or(false)
-    }
-
     fn status(&self, search: &SearchResult) -> Status {
         let kept = self.violation(&self.best) <= KEPT;
         match () {
             () if self.memory.interrupted() => Status::Interrupted,
-            () if kept && search.optimality.residual <= OPTIMAL => match self.has_no_effect(search) {
-                true => Status::NoEffect,
-                false => Status::Optimal,
-            },
+            () if kept && self.has_no_effect && !search.optimality.met => Status::NoEffect,
+            () if kept && search.optimality.residual <= OPTIMAL => Status::Optimal,
             () if self.ran_out => Status::IterationLimit,
             () if kept => Status::Stuck,
             () => Status::LimitsNotKept,

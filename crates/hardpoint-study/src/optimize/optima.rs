@@ -7,19 +7,30 @@ use super::{KEPT, Optimization, Status, is_as_good_in_own_assembly};
 /// Optima in the same assembly and sense are the same if no variable differs by more than this fraction of its bounds:
 /// an optimality residual of 1e-6 leaves less than that wherever the curvature of the goals is of order one.
 const SAME: f64 = 1e-4;
+/// Along a flat valley the ends of searches are further apart: they are the same up to this distance if their
+/// objectives are equal up to [`FLAT`].
+const VALLEY: f64 = 1e-2;
+/// Largest relative difference of objectives along a flat valley.
+const FLAT: f64 = 1e-7;
 
 impl Optimization {
     /// Distinct optima, the best first: of each the searches that ended in it, the best first.
     ///
-    /// Searches that ended elsewhere are in none of them.
+    /// Searches that ended elsewhere are in none of them. Variables without effect in all searches do not count.
     pub fn optima(&self, model: &Model, settings: &OptimizationSettings) -> Vec<Vec<usize>> {
-        let design = |k: usize| &self.searches[k].found.as_ref().expect("an optimum has a design").design;
+        let found = |k: usize| self.searches[k].found.as_ref().expect("an optimum has a design");
+        let has_effect = |v: usize| self.searches.iter().any(|search| !search.idle[v]);
+        let relevant: Vec<_> =
+            (0..settings.variables.len()).filter(|v| has_effect(*v)).map(|v| settings.variables[v]).collect();
         let is_same = |a: usize, b: usize| {
             let same_variant = self.searches[a].variant == self.searches[b].variant;
+            let [a, b] = [found(a), found(b)];
+            let is_flat = (a.objective - b.objective).abs() <= FLAT * a.objective.abs();
+            let least = if is_flat { VALLEY } else { SAME };
             same_variant
-                && settings.variables.iter().all(|v| {
+                && relevant.iter().all(|v| {
                     let [low, high] = model.variables[v.0].bounds.unwrap_or_default();
-                    (design(a)[v.0] - design(b)[v.0]).abs() <= SAME * (high - low)
+                    (a.design[v.0] - b.design[v.0]).abs() <= least * (high - low)
                 })
         };
         let kept = |k: &usize| {

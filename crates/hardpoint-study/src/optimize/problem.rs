@@ -3,10 +3,11 @@
 use std::ops::Range;
 
 use crate::evaluation::{DesignEvaluation, Motions, StudyCost};
+use crate::magnitude::Magnitude;
 use hardpoint::model::{Limit, LimitTarget, Model, OptimizationSettings, Reduction, VariableId};
 use hardpoint::motion::StopKind;
 use hardpoint::number::Dual;
-use hardpoint::run::{MarginDerivatives, MetricParts, MetricUse, misfits, peaks};
+use hardpoint::run::{MarginDerivatives, MetricParts, MetricUse, Solution, misfits, peaks};
 
 /// Goals and limits of an optimisation, and the motions that they are evaluated in.
 #[derive(Clone, Debug)]
@@ -109,6 +110,8 @@ pub(crate) struct GoalShare {
     pub misfits: Range<usize>,
     pub plain: Range<usize>,
     pub peaks: Range<usize>,
+    /// Largest change of their numbers that is still round-off.
+    pub round_off: f64,
 }
 
 /// Distance of a maximum or minimum of a curve from its target: the largest of several smooth numbers.
@@ -189,15 +192,37 @@ impl Point {
         Self { misfits: self.smooth_misfits(), peaks, extrema, ..self.clone() }
     }
 
-    /// True if all goals are constant to first order, up to round-off.
-    pub fn is_constant(&self, problem: &Problem<'_>) -> bool {
+    /// Effect of every searched variable on the goals: the largest change of a number over its bounds, to first order,
+    /// as a multiple of what is round-off.
+    pub fn effects(&self, problem: &Problem<'_>) -> Vec<f64> {
         let rows = || [&self.misfits, &self.plain].into_iter().chain(&self.peaks);
         let size = rows().flat_map(|rows| &rows.values).fold(0.0, |most: f64, value| most.max(value.abs()));
-        let change = |d: &Vec<f64>| {
-            let over_bounds = d.iter().zip(&problem.bounds).map(|(d, [low, high])| (d * (high - low)).abs());
-            over_bounds.fold(0.0, f64::max)
+        let mut effects = vec![0.0_f64; problem.bounds.len()];
+        for share in &self.shares {
+            let round_off = share.round_off.max(super::MET * size);
+            let extrema = self.extrema.iter().filter(|e| share.misfits.contains(&e.misfit));
+            let candidates = self.peaks[share.peaks.clone()].iter().chain(extrema.map(|e| &e.rows));
+            let own = [&self.misfits.d[share.misfits.clone()], &self.plain.d[share.plain.clone()]];
+            for d in own.into_iter().chain(candidates.map(|rows| &rows.d[..])).flatten() {
+                for (effect, (d, [low, high])) in effects.iter_mut().zip(d.iter().zip(&problem.bounds)) {
+                    *effect = effect.max((d * (high - low)).abs() / round_off);
+                }
+            }
+        }
+        effects
+    }
+
+    /// True if all goals are constant to first order, up to round-off.
+    pub fn is_constant(&self, problem: &Problem<'_>) -> bool {
+        self.effects(problem).iter().all(|effect| *effect <= 1.0)
+    }
+
+    /// True if all goals are squares of numbers that are round-off.
+    pub fn is_round_off(&self) -> bool {
+        let size = |share: &GoalShare| {
+            self.misfits.values[share.misfits.clone()].iter().map(|r| r * r).sum::<f64>().sqrt()
         };
-        rows().flat_map(|rows| &rows.d).map(change).all(|change| change <= super::MET * size)
+        self.has_only_squares() && self.shares.iter().all(|share| size(share) <= share.round_off)
     }
 
     /// Norm of the misfits.
@@ -332,13 +357,21 @@ impl<'m> Problem<'m> {
         })?;
         let margins = found.solutions.iter().filter_map(|s| Some(s.motion.least_margin()?.1.value));
         let mut point = Point { design, margin: margins.reduce(f64::min), ..Point::default() };
+        let magnitude = |(motion, solution): (usize, &Solution)| {
+            Magnitude::of_settled_motion(self.motions.model(motion), &solution.motion)
+        };
+        let magnitudes: Vec<Magnitude> = found.solutions.iter().enumerate().map(magnitude).collect();
         for entry in &self.goals {
             let counts = |p: &Point| [p.misfits.values.len(), p.plain.values.len(), p.peaks.len()];
             let before = counts(&point);
             self.add_goal(*entry, &found, &mut point)?;
             let after = counts(&point);
             let [misfits, plain, peaks] = [0, 1, 2].map(|k| before[k]..after[k]);
-            point.shares.push(GoalShare { misfits, plain, peaks });
+            let model = self.motions.model(entry.motion);
+            let (metric, value) = (&model.metrics[entry.metric], point.goal_values.last().copied());
+            let round_off = magnitudes[entry.motion].metric_round_off(model, metric, value);
+            let round_off = self.settings.goals[entry.of].weight.abs() * round_off;
+            point.shares.push(GoalShare { misfits, plain, peaks, round_off });
         }
         for (place, (limit, of)) in self.limits.iter().enumerate() {
             match *of {

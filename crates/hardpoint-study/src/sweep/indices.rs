@@ -14,7 +14,7 @@ pub struct SobolIndex {
 
 /// Indices of a metric with respect to each variable, from its values in the designs of
 /// [`SweepMethod::Indices`](hardpoint::model::SweepMethod::Indices), NaN for designs without a value. `None` if the
-/// metric does not vary, or fewer than two pairs have it.
+/// metric does not vary by more than `round_off`, or fewer than two pairs have it.
 ///
 /// ```text
 /// f0 = mean of f_A and f_B,   V = mean of ((f_A - f0)^2 + (f_B - f0)^2) / 2
@@ -25,7 +25,7 @@ pub struct SobolIndex {
 /// A, B: independent designs; ABi: A with variable i of B. A pair with a failed design is left out for the variables
 /// that need it: the indices then describe the part of the ranges where the mechanism moves. Standard errors are those
 /// of quotients of means over independent pairs; evenly spread pairs are more accurate.
-pub fn sobol_indices(values: &[f64], variables: usize) -> Vec<Option<SobolIndex>> {
+pub fn sobol_indices(values: &[f64], variables: usize, round_off: f64) -> Vec<Option<SobolIndex>> {
     let width = variables + 2;
     let of = |i: usize| {
         let pairs = || values.chunks_exact(width).map(move |row| [row[0], row[1], row[i + 2]]);
@@ -42,8 +42,7 @@ pub fn sobol_indices(values: &[f64], variables: usize) -> Vec<Option<SobolIndex>
         let mut sums = [0.0; 3];
         terms.clone().for_each(|t| sums.iter_mut().zip(t).for_each(|(sum, t)| *sum += t));
         let [first, total, variance] = sums.map(|sum| sum / n);
-        // A constant with round-off does not vary.
-        if !(variance > (ROUND_OFF * f0).powi(2)) {
+        if !(variance.sqrt() > round_off) {
             return None;
         }
         let (first, total) = (first / variance, total / variance);
@@ -58,9 +57,6 @@ pub fn sobol_indices(values: &[f64], variables: usize) -> Vec<Option<SobolIndex>
     };
     (0..variables).map(of).collect()
 }
-
-/// A metric that varies by less than this fraction of itself varies by round-off only.
-const ROUND_OFF: f64 = 1e-12;
 
 #[cfg(test)]
 mod tests {
@@ -110,7 +106,7 @@ mod tests {
         let both = 8.0 * b * b * pi.powi(8) / 225.0;
         let total = [alone[0] + both, alone[1], both];
         let f = |x: &[f64]| x[0].sin() + a * x[1].sin().powi(2) + b * x[2].powi(4) * x[0].sin();
-        let found = sobol_indices(&values(1 << 13, &[[-pi, pi]; 3], f), 3);
+        let found = sobol_indices(&values(1 << 13, &[[-pi, pi]; 3], f), 3, 0.0);
         close(&found, &alone.map(|x| x / v), &total.map(|x| x / v), 0.01);
     }
 
@@ -120,12 +116,12 @@ mod tests {
         let ranges = [[-1.0, 1.0], [0.0, 4.0], [2.0, 3.0]];
         let parts = [4.0 * 4.0, 1.0 * 16.0, 0.0];
         let exact = parts.map(|p| p / 32.0);
-        let found = sobol_indices(&values(4096, &ranges, |x| 1e3 + 2.0 * x[0] - x[1]), 3);
+        let found = sobol_indices(&values(4096, &ranges, |x| 1e3 + 2.0 * x[0] - x[1]), 3, 0.0);
         close(&found[..2], &exact[..2], &exact[..2], 2e-3);
         let idle = found[2].expect("others vary");
         assert_eq!((idle.first, idle.total), ([0.0; 2], [0.0; 2]));
         // x y on [-1, 1]^2 has no first-order effects.
-        let found = sobol_indices(&values(4096, &[[-1.0, 1.0]; 2], |x| x[0] * x[1]), 2);
+        let found = sobol_indices(&values(4096, &[[-1.0, 1.0]; 2], |x| x[0] * x[1]), 2, 0.0);
         close(&found, &[0.0; 2], &[1.0; 2], 0.02);
     }
 
@@ -138,13 +134,16 @@ mod tests {
             .enumerate()
             .filter(|(k, _)| k / 4 % 16 == 0 && k % 4 == k / 64 % 4)
             .for_each(|(_, x)| *x = f64::NAN);
-        let (all, found) = (sobol_indices(&whole, 2), sobol_indices(&some, 2));
+        let (all, found) = (sobol_indices(&whole, 2, 0.0), sobol_indices(&some, 2, 0.0));
         for (a, b) in all.iter().zip(&found) {
             let (a, b) = (a.expect("varies"), b.expect("varies"));
             assert!(b.pairs < a.pairs && b.pairs >= a.pairs * 15 / 16, "{} {}", a.pairs, b.pairs);
             assert!((a.first[0] - b.first[0]).abs() < 0.02 && (a.total[0] - b.total[0]).abs() < 0.02);
         }
-        assert_eq!(sobol_indices(&[5.0; 4000], 2), [None, None]);
-        assert_eq!(sobol_indices(&[f64::NAN; 4000], 2), [None, None]);
+        assert_eq!(sobol_indices(&[5.0; 4000], 2, 0.0), [None, None]);
+        assert_eq!(sobol_indices(&[f64::NAN; 4000], 2, 0.0), [None, None]);
+        // A constant with round-off, also one of about zero
+        let noise: Vec<f64> = (0..4000).map(|k| 1e-15 * f64::from(k % 7 - 3)).collect();
+        assert_eq!(sobol_indices(&noise, 2, 1e-12), [None, None]);
     }
 }

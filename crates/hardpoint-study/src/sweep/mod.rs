@@ -17,6 +17,7 @@ use hardpoint::model::{Model, OutputSource, SweepSettings};
 use hardpoint::run::{Run, Solution};
 
 use super::evaluation::{Motions, StudyCost};
+use super::magnitude::Magnitude;
 use super::request::RequestError;
 use super::samples::{SampleBlock, SampleRun, failure_reason};
 use hardpoint::run::{metric_number, place_of};
@@ -114,14 +115,23 @@ impl<'a> Sweep<'a> {
         &self.metrics
     }
 
-    /// Results of the nominal design, as the only one of its block.
-    pub fn nominal(&self) -> Block {
+    /// Results of the nominal design, as the only one of its block, and the largest spread of each metric that is still
+    /// round-off.
+    pub fn nominal(&self) -> (Block, Vec<f64>) {
         let mut block = Block { numbers: 0..1, ..Block::default() };
+        let mut round_off = vec![0.0; self.metrics.len()];
         for (motion, analysis) in self.motions.analyses().iter().enumerate() {
             let solution = analysis.solve(Run::new().without_sensitivities());
             self.see(&mut block, 0, motion, &solution);
+            let model = self.motions.model(motion);
+            let magnitude = Magnitude::of_settled_motion(model, &solution.motion);
+            for (k, of) in self.metrics.iter().enumerate().filter(|(_, of)| of.motion == motion) {
+                let (metric, value) = (&model.metrics[of.place], block.metrics[k].first().copied());
+                let value = value.filter(|x| x.is_finite());
+                round_off[k] = magnitude.metric_round_off(model, metric, value);
+            }
         }
-        block
+        (block, round_off)
     }
 
     /// Solves all designs from a number on, which must be a multiple of [`BLOCK`](super::BLOCK). `done` receives the

@@ -98,10 +98,10 @@ pub struct MetricSpread {
     pub nominal: f64,
     /// Derivative by every toleranced variable.
     pub d: Vec<f64>,
-    /// First-order standard deviation: root sum square.
+    /// First-order standard deviation: root sum square; 0 if it is round-off.
     pub sigma: f64,
-    /// Contribution of each variable to the first-order variance; the sum is 1. With correlated variables a
-    /// contribution may be negative.
+    /// Contribution of each variable to the first-order variance; the sum is 1, or 0 without a variance. With
+    /// correlated variables a contribution may be negative.
     pub shares: Vec<f64>,
     /// Contributions to the second-order variance, if it is known.
     pub second_shares: Option<Vec<f64>>,
@@ -110,11 +110,11 @@ pub struct MetricSpread {
     /// Second-order moments; `None` if a design near the nominal one does not reach the end, so that the gradient
     /// cannot be differenced.
     pub second: Option<SecondOrder>,
-    /// Threshold of a zero change.
+    /// Threshold of a zero standard deviation.
     pub round_off: f64,
 }
 
-/// Moments to second order, in SI.
+/// Moments to second order, in SI; 0 if they are round-off.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SecondOrder {
     /// Mean minus nominal value.
@@ -190,11 +190,11 @@ impl MetricSpread {
     }
 
     /// Nonlinearity of the metric within the tolerances: the second-order part relative to the first-order standard
-    /// deviation.
+    /// deviation, infinite if that is zero. `None` if it is unknown.
     pub fn nonlinearity(&self) -> Option<f64> {
         let s = self.second?;
         let part = s.bend.max(s.shift.abs());
-        Some(if part <= self.round_off { 0.0 } else { part / self.sigma })
+        Some(if part == 0.0 { 0.0 } else { part / self.sigma })
     }
 
     /// True if the second derivatives indicate that the linear result is inaccurate.
@@ -394,8 +394,18 @@ impl Study<'_> {
         let value = &self.nominal.metrics[one.motion][one.place];
         let nominal = value.value.expect("only metrics with a value are taken");
         let d = self.by_tolerated(&value.d);
-        let sigma = self.deviations.sigma(&d);
-        let second = hessian.map(|h| self.deviations.second_order(&d, h));
+        let motion = &self.nominal.solutions[one.motion].motion;
+        let metric = &self.model.metrics[one.metric];
+        let magnitude = Magnitude::of_settled_motion(self.model, motion);
+        let round_off = magnitude.metric_round_off(self.model, metric, Some(nominal));
+        let settled = |x: f64| if x.abs() <= round_off { 0.0 } else { x };
+        let sigma = settled(self.deviations.sigma(&d));
+        let settled_moments = |SecondOrder { shift, sigma, bend }: SecondOrder| SecondOrder {
+            shift: settled(shift),
+            sigma: settled(sigma),
+            bend: settled(bend),
+        };
+        let second = hessian.map(|h| settled_moments(self.deviations.second_order(&d, h)));
         let worst = [-1.0, 1.0].map(|sign| {
             let mut extreme = worst::extreme(self.deviations, nominal, &d, hessian, sign);
             let design = self.deviations.design(self.model.variables.len(), &extreme.deviations);
@@ -408,11 +418,13 @@ impl Study<'_> {
             }
             extreme
         });
-        let shares = self.deviations.shares(&d);
-        let second_shares = hessian.map(|h| self.deviations.second_shares(&d, h));
-        let motion = &self.nominal.solutions[one.motion].motion;
-        let dimension = self.model.metric_dimension(&self.model.metrics[one.metric]);
-        let round_off = Magnitude::of_motion(self.model, motion).round_off(dimension, 0);
+        let worst = worst::ordered(worst, nominal);
+        // Round-off has no contributions.
+        let shares_of = |sigma: f64, shares: Vec<f64>| if sigma == 0.0 { vec![0.0; d.len()] } else { shares };
+        let shares = shares_of(sigma, self.deviations.shares(&d));
+        let second_shares = hessian
+            .zip(second)
+            .map(|(h, moments)| shares_of(moments.sigma, self.deviations.second_shares(&d, h)));
         MetricSpread {
             metric: one.metric,
             motion: one.motion,

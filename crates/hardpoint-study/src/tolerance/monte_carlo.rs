@@ -46,7 +46,7 @@ pub struct SampledMetric {
     pub known: usize,
     /// Mean, and its standard error.
     pub mean: [f64; 2],
-    /// Standard deviation, and its standard error.
+    /// Standard deviation, and its standard error; 0 if it is round-off.
     pub sigma: [f64; 2],
     /// Skewness: 0 for a normal distribution.
     pub skewness: f64,
@@ -227,7 +227,9 @@ impl Study<'_> {
     }
 
     fn results(&self, found: &ToleranceResult, samples: usize, all: Block) -> MonteCarlo {
-        let metrics: Vec<SampledMetric> = all.metrics.into_iter().map(SampledMetric::of).collect();
+        let metrics = all.metrics.into_iter().zip(&found.metrics);
+        let metrics: Vec<SampledMetric> =
+            metrics.map(|(values, of)| SampledMetric::of(values, of.round_off)).collect();
         let curve = |points: Vec<Growing>| SampledCurve {
             mean: points.iter().map(|p| p.mean).collect(),
             sigma: points.iter().map(|p| (p.squares / (p.n - 1.0)).sqrt()).collect(),
@@ -274,7 +276,8 @@ impl Study<'_> {
 }
 
 impl SampledMetric {
-    fn of(values: Vec<f64>) -> Self {
+    /// Statistics of values whose standard deviation is zero up to `round_off`.
+    fn of(values: Vec<f64>, round_off: f64) -> Self {
         let mut sorted: Vec<f64> = values.iter().copied().filter(|x| x.is_finite()).collect();
         if sorted.is_empty() {
             let none = [f64::NAN; 2];
@@ -284,10 +287,10 @@ impl SampledMetric {
         let mean = sorted.iter().sum::<f64>() / n;
         let central = |p: i32| sorted.iter().map(|x| (x - mean).powi(p)).sum::<f64>() / n;
         let [second, third, fourth] = [2, 3, 4].map(central);
-        let spread = second > 0.0;
+        let spread = second.sqrt() > round_off;
         let kurtosis = if spread { fourth / (second * second) } else { 3.0 };
         let skewness = if spread { third / second.powf(1.5) } else { 0.0 };
-        let sigma = (second * n / (n - 1.0)).sqrt();
+        let sigma = if spread { (second * n / (n - 1.0)).sqrt() } else { 0.0 };
         sorted.sort_by(f64::total_cmp);
         Self {
             known: sorted.len(),
@@ -360,11 +363,11 @@ mod tests {
     fn a_few_designs_say_nothing_of_sigma() {
         for count in 2..SampledMetric::FEWEST {
             let values = (0..count).map(|k| 1e-3 * k as f64).collect();
-            let sampled = SampledMetric::of(values);
+            let sampled = SampledMetric::of(values, 0.0);
             assert!(!sampled.differs_from(1.0) && sampled.sigma[1] > 0.0, "{count}");
         }
         // sigma / sqrt(2 (n - 1)), as for normal values
-        let [sigma, error] = SampledMetric::of(vec![0.0, 1.0]).sigma;
+        let [sigma, error] = SampledMetric::of(vec![0.0, 1.0], 0.0).sigma;
         assert!((error - sigma / 2_f64.sqrt()).abs() < 1e-15);
     }
 }

@@ -29,7 +29,7 @@ pub struct Extreme {
 /// Extreme of a function with a gradient and optional second derivatives: the maximum for `sign` 1, the minimum for -1.
 pub(super) fn extreme(of: &Deviations, value: f64, g: &[f64], h: Option<&[Vec<f64>]>, sign: f64) -> Extreme {
     let g: Vec<f64> = g.iter().map(|g| sign * g).collect();
-    let corner = corner(of, &g);
+    let corner = corner(of, &g, sign);
     let first = value + sign * dot(&g, &corner);
     let Some(h) = h else {
         return Extreme { first, second: None, deviations: corner, exact: None, why: None };
@@ -43,9 +43,10 @@ pub(super) fn extreme(of: &Deviations, value: f64, g: &[f64], h: Option<&[Vec<f6
     };
     let opposite = corner.iter().map(|x| -x).collect();
     let starts = [corner.clone(), opposite].into_iter().chain(of.blocks.iter().map(flipped));
+    // Of equal ones the first, so that a minimum and a maximum without derivatives are at opposite corners.
     let found = starts
         .map(|start| quadratic.ascend(start))
-        .max_by(|a, b| quadratic.at(a).total_cmp(&quadratic.at(b)));
+        .reduce(|best, other| if quadratic.at(&other) > quadratic.at(&best) { other } else { best });
     let deviations = found.expect("there is a start");
     Extreme {
         first,
@@ -56,23 +57,45 @@ pub(super) fn extreme(of: &Deviations, value: f64, g: &[f64], h: Option<&[Vec<f6
     }
 }
 
-/// Every tolerance at the end of its reach, along the gradient; without a gradient, at the upper end.
-fn corner(of: &Deviations, g: &[f64]) -> Vec<f64> {
+/// Exact minimum and maximum: each design at a predicted worst case, and the nominal one, is within the tolerances, and
+/// where the first and second derivatives vanish the prediction says nothing of their order.
+pub(super) fn ordered(ends: [Extreme; 2], nominal: f64) -> [Extreme; 2] {
+    let [Some(least), Some(greatest)] = ends.each_ref().map(|e| e.exact) else { return ends };
+    let none = vec![0.0; ends[0].deviations.len()];
+    let designs =
+        [(least, ends[0].deviations.clone()), (greatest, ends[1].deviations.clone()), (nominal, none)];
+    let mut sign = 1.0;
+    ends.map(|mut end| {
+        sign = -sign;
+        for (value, deviations) in &designs {
+            if end.exact.is_some_and(|exact| sign * value > sign * exact) {
+                (end.exact, end.deviations) = (Some(*value), deviations.clone());
+            }
+        }
+        end
+    })
+}
+
+/// Every tolerance at the end of its reach, along the gradient; without a gradient, at the upper end for the maximum
+/// (`sign` 1), and at the lower end for the minimum.
+fn corner(of: &Deviations, g: &[f64], sign: f64) -> Vec<f64> {
     let mut d = vec![0.0; g.len()];
     for block in &of.blocks {
-        towards(&g[block.range()], block.reach, &mut d[block.range()]);
+        let (direction, to) = (&g[block.range()], &mut d[block.range()]);
+        if !towards(direction, block.reach, to) {
+            to.fill(sign * block.reach / (block.len as f64).sqrt());
+        }
     }
     d
 }
 
-/// Point at the end of a reach in a direction.
-fn towards(direction: &[f64], reach: f64, to: &mut [f64]) {
+/// Moves a point to the end of a reach in a direction; false if there is no direction.
+fn towards(direction: &[f64], reach: f64, to: &mut [f64]) -> bool {
     let norm = dot(direction, direction).sqrt();
     if norm > 0.0 {
         to.iter_mut().zip(direction).for_each(|(x, g)| *x = reach * g / norm);
-    } else {
-        to.fill(reach / (to.len() as f64).sqrt());
     }
+    norm > 0.0
 }
 
 /// `g' d + d' H d / 2`, with each tolerance of d within its reach.
@@ -110,10 +133,12 @@ impl Quadratic<'_> {
     fn along(&self, block: &Block, d: &mut [f64]) {
         let (i, reach) = (block.first, block.reach);
         let (curvature, slope) = (self.h[i][i], self.slope(i, d) - self.h[i][i] * d[i]);
-        let height = |x: f64| slope * x + 0.5 * curvature * x * x;
+        // The last term makes zeros of both signs equal.
+        let height = |x: f64| slope * x + 0.5 * curvature * x * x + 0.0;
         let top = (curvature < 0.0).then(|| (-slope / curvature).clamp(-reach, reach));
-        let best =
-            [d[i], reach, -reach].into_iter().chain(top).max_by(|a, b| height(*a).total_cmp(&height(*b)));
+        // Of equal ones the last: where nothing is gained, the value stays.
+        let ends = [reach, -reach].into_iter().chain(top).chain([d[i]]);
+        let best = ends.max_by(|a, b| height(*a).total_cmp(&height(*b)));
         d[i] = best.expect("there is a candidate");
     }
 
@@ -126,7 +151,9 @@ impl Quadratic<'_> {
         for _ in 0..TURNS {
             let before = (self.at(d), d[block.range()].to_vec());
             let slope: Vec<f64> = block.range().map(|i| self.slope(i, d) + mu * d[i]).collect();
-            towards(&slope, block.reach, &mut d[block.range()]);
+            if !towards(&slope, block.reach, &mut d[block.range()]) {
+                d[block.range()].fill(block.reach / (block.len as f64).sqrt());
+            }
             if self.at(d) < before.0 {
                 d[block.range()].copy_from_slice(&before.1);
                 return;

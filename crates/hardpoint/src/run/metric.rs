@@ -209,7 +209,25 @@ pub(crate) fn unresolved_times(solution: &Solution, metric: &Metric, finer: bool
         let error = time_error(&y, &x, k, *time).unwrap_or(f64::INFINITY);
         !(error <= part * range)
     };
-    located.into_iter().filter(unresolved).collect()
+    let beside = located.iter().flat_map(|t| beside(metric, &y, *t)).collect::<Vec<_>>();
+    located.into_iter().filter(unresolved).chain(beside).collect()
+}
+
+/// Distance of the times beside one at which a slope over a measure without rates is taken, as a fraction of the run:
+/// a central difference loses as many digits by round-off as by its curvature.
+const BESIDE: f64 = 1e-4;
+
+/// Times beside one at which a metric is taken over a measure, if there are no rates: at an equilibrium. The derivative
+/// at constant abscissa depends on the slope there.
+fn beside(metric: &Metric, y: &SampledCurve<'_, f64>, t: f64) -> Vec<f64> {
+    let takes_slope = matches!(metric.take, Reduction::Value(_) | Reduction::RmsAtPoints(_));
+    if y.orders > 1 || metric.over.is_none() || !takes_slope {
+        return Vec::new();
+    }
+    let by = BESIDE * (y.times[y.times.len() - 1] - y.times[0]);
+    let is_near = |range: [f64; 2]| y.times.iter().any(|time| range[0] < *time && *time < range[1]);
+    let sides = [(t - by, [t - 2.0 * by, t]), (t + by, [t, t + 2.0 * by])];
+    sides.into_iter().filter(|(_, range)| !is_near(*range)).map(|(time, _)| time).collect()
 }
 
 /// Time of the maximum (sign 1) or minimum (-1). If the motion is known at `finer` times, also the times of all extrema
