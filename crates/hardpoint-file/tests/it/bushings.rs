@@ -639,3 +639,30 @@ at = [0, 1]
     assert_eq!(warning.message, "the two points of bushing `u` are 5 mm apart");
     assert!(apart.render(warning, false).contains("apart.toml:9:1"), "{}", apart.render(warning, false));
 }
+
+#[test]
+fn a_compliance_without_a_value_has_no_derivatives() {
+    let file = parsed(
+        r#"
+name = "door"
+units = { length = "mm", angle = "deg" }
+hardpoints = { A = [0, 0, 0], B = [0, 0, 500], C = [400, 0, 250] }
+bodies = { door = {} }
+joints.lower = { type = "revolute", bodies = ["ground", "door"], at = "A", axis = "z" }
+joints.upper = { type = "revolute", bodies = ["ground", "door"], at = "B", axis = "z" }
+drivers.turn = { joint = "lower", law = "30*t" }
+forces.e = { type = "elastic_joint", joint = "lower", x = 100, y = 100, z = 50 }
+forces.f = { type = "elastic_joint", joint = "upper", x = 100, y = 100, z = 50 }
+points.c = { body = "door", at = "C" }
+measures.compliance = { type = "compliance", of = "c.z", at = "c", along = "z" }
+design.C = { move = "C", along = "z" }
+time = { at = [0, 1] }
+"#,
+    );
+    let solution = Analysis::new(&file.model).unwrap().run();
+    let m = solution.measured.index("compliance").unwrap();
+    for k in 0..2 {
+        assert!(solution.measured.value(k, m)[0].is_nan());
+        assert!(solution.measured.d(k, VariableId(0), m)[0].is_nan());
+    }
+}

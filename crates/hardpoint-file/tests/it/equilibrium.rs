@@ -1239,3 +1239,32 @@ fn below_the_limit_load_output_times_and_metrics_do_not_depend_on_each_other() {
         }
     }
 }
+
+#[test]
+fn a_value_over_a_measure_has_its_derivative_for_any_output_times() {
+    const LEVER: &str = r#"
+name = "lever"
+units = { length = "mm", angle = "deg" }
+hardpoints = { A = [0, 0, 0], B = [300, 0, 0] }
+bodies = { arm = {} }
+points.tip = { body = "arm", at = "B" }
+joints.j = { type = "revolute", bodies = ["ground", "arm"], at = "A", axis = "y", axis2 = "x" }
+equilibrium = {}
+metrics.z = { of = "tip.z", over = "tip.x", take = "value", at = 299 }
+design.B = { move = "B", along = "x" }
+[forces]
+e = { type = "elastic_joint", joint = "j", x = 100, y = 80, about_z = 2 }
+load = { type = "force", at = "tip", force = 100, along = "-z", law = "sin(pi*t)" }
+[time]
+"#;
+    for times in ["at = [0, 1]", "at = [0, 0.3, 1]", "end = 1\nsteps = 100"] {
+        let model = file(&format!("{LEVER}{times}\n")).model;
+        let analysis = Analysis::new(&model).unwrap();
+        let at = |b: f64| metrics(&model, &analysis.solve(Run::new().at(&[b])))[0].clone();
+        let step = 1e-5;
+        let [more, less] = [step, -step].map(|b| at(b).value.unwrap());
+        let (found, expected) = (at(0.0).d[0], (more - less) / (2.0 * step));
+        // The slope there is a central difference of solved positions.
+        assert!((found - expected).abs() < 1e-5 * expected.abs(), "{times}: {found} {expected}");
+    }
+}

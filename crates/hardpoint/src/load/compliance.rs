@@ -148,7 +148,7 @@ impl<'a> Compliances<'a> {
 
     /// Returns the compliance of measure m with its derivative by a variable; NaN if it is not determined.
     fn compliance(&self, m: usize, by: usize, deflections: &[Vec<(Dual, Dual)>]) -> Dual {
-        let unknown = Dual::constant(f64::NAN);
+        let unknown = Dual { v: f64::NAN, d: f64::NAN };
         let (model, ChangedDesign { fixed, geometry }) = (self.model, &self.changed[by]);
         let Some((of, force)) = model.measures[m].kind.compliance() else { return unknown };
         let released = released_by(model, m);

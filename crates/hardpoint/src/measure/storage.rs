@@ -74,30 +74,22 @@ impl MeasureResults {
         array(|order| finite(row.get(3 * m + order)))
     }
 
-    /// Derivatives by variable b; NaN if the variable is not admissible, see
+    /// Derivatives by variable b; NaN if there is no value, or if the variable is not admissible, see
     /// [`Sensitivities::admissibility`](crate::sensitivity::Sensitivities::admissibility).
     pub fn d(&self, k: usize, b: VariableId, m: usize) -> [f64; 3] {
-        if self.unknown[b.0] {
-            return [f64::NAN; 3];
-        }
-        let Some(place) = self.places[b.0 * self.outputs.len() + m] else {
-            let orders = self.outputs[m].known.orders;
-            return std::array::from_fn(|order| if order < orders { 0.0 } else { f64::NAN });
-        };
-        let row = self.d.row(k);
-        array(|order| finite(row.get(place + order)))
+        array(|order| self.derivative(k, b, m, order))
     }
 
     /// One of them: of the value (`order` 0), the rate (1) or the acceleration (2).
     #[inline]
     pub fn derivative(&self, k: usize, b: VariableId, m: usize, order: usize) -> f64 {
-        if self.unknown[b.0] {
+        let is_known = self.values.row(k).get(3 * m + order).is_finite();
+        if self.unknown[b.0] || !is_known {
             return f64::NAN;
         }
         match self.places[b.0 * self.outputs.len() + m] {
             Some(place) => finite(self.d.row(k).get(place + order)),
-            None if order < self.outputs[m].known.orders => 0.0,
-            None => f64::NAN,
+            None => 0.0,
         }
     }
 
