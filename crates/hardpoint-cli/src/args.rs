@@ -419,7 +419,8 @@ overlap. That nothing is nearer between output times is proved with intervals; w
 the reason and the time are given. Over a grid of two drivers (`grid` of a case) the least
 distance is located between the positions, and not proved.
 
-The exit code is 1 if a pair is nearer than the `min` of its clearance.
+The exit code is 1 if a pair is nearer than the `min` of its clearance, or its distance is not
+known.
 
 Examples:
   hardpoint clearance models/studies/knee.toml
@@ -447,7 +448,8 @@ The envelope is the union of a shape of `[shapes]` at all positions of the motio
 and of all grids of two drivers, unless `--case` names one: a tyre over travel and steer, for the
 wheel house. Positions between output times are added until they change the surface by less than
 half of the permitted error; triangles deviate from it by less than the other half. Both figures
-are stated, with the volume. Lengths are in the unit of the model file, like the surface, unless
+are stated, with the volume. A motion that ends early is swept to where a limit of a joint stops
+it, or to the last position that is reached. Lengths are in the unit of the model file, like the surface, unless
 another one is given: `0.5` or `0.02in`.
 
 The exit code is 1 if the permitted error is not reached.

@@ -151,6 +151,9 @@ fn reason_in_words(model: &Model, reason: ProofFailure) -> String {
             format!("the shapes are nearer at t = {} s", rounded(time, DIGITS))
         }
         ProofFailure::Unresolved => "no bound reaches the claim".into(),
+        ProofFailure::CoresMeet => {
+            "the cores of the shapes meet there, and nothing is proved of how deep they are".into()
+        }
         ProofFailure::WithinRing => "bounds exist only for rings that are nearest from the outside".into(),
         ProofFailure::Mesh { shape } => {
             format!("`{}` is a mesh, for which no bounds are computed", model.shapes[shape.0].name)
@@ -191,6 +194,9 @@ pub fn proof(
     found: &PairClearance,
 ) -> Option<ProofFact> {
     let least = found.least()?.at.distance[0];
+    if found.unknown_at().is_some() {
+        return None;
+    }
     let mut prove = |allowance: f64| {
         let claim = least - allowance * model.size();
         let proof = prover.prove(found.shapes, claim);
@@ -219,6 +225,7 @@ record! {
         let least = lowest.map(|m| m.at);
         // Where the cores meet, the shapes are at least as deep in each other as their distance.
         let below = |min: f64| least.is_some_and(|at| at.cores_meet || at.distance[0] < min - KEPT * model.size());
+        let unknown_at = found.unknown_at();
     }
     /// Name of the clearance.
     clearance: String = clearance.name.clone();
@@ -226,12 +233,15 @@ record! {
     shapes: [String; 2] = [a.to_owned(), b.to_owned()];
     /// Unit of all distances.
     unit: String = unit(units, Dimension::LENGTH);
-    /// Least distance; `null` if no output time was solved.
+    /// Least distance; `null` if no output time was solved, or it is not known.
     least: Option<f64> = least.map(|at| length(at.distance[0]));
     /// Distance that is required.
     min: Option<f64> = pair.min.map(length);
     /// False if the least distance is below the required one, or not known.
-    kept: bool = least.is_some() && !pair.min.is_some_and(below);
+    kept: bool = least.is_some() && unknown_at.is_none() && !pair.min.is_some_and(below);
+    /// First time at which the distance is not known, s.
+    #[serde(skip)]
+    unknown_at: Option<f64> = unknown_at;
     /// True if the distance is the same at all times.
     constant: bool = found.is_constant;
     /// Index of the least of the minima.
@@ -322,8 +332,15 @@ impl ClearanceFact {
 
     fn lines(&self) -> Vec<String> {
         let Self { clearance, shapes: [a, b], unit, .. } = self;
+        let unknown = self.unknown_at.map(|time| {
+            format!(
+                "{clearance}: the distance of {a} and {b} is not known at t = {} s",
+                rounded(time, DIGITS)
+            )
+        });
         let Some(lowest) = self.lowest() else {
-            return vec![format!("{clearance}: no distance of {a} and {b} was solved")];
+            let unsolved = || format!("{clearance}: no distance of {a} and {b} was solved");
+            return vec![unknown.unwrap_or_else(unsolved)];
         };
         let at = |time: f64, drivers: &str| {
             let drivers = if drivers.is_empty() { String::new() } else { format!(" ({drivers})") };
@@ -376,7 +393,9 @@ impl ClearanceFact {
                 lines.push(format!("  its {what} at {} s changes by {by}", rounded(contact.time, DIGITS)));
             }
         }
-        if let Some(min) = self.min.filter(|_| !self.kept) {
+        if let Some(unknown) = unknown {
+            lines.push(unknown);
+        } else if let Some(min) = self.min.filter(|_| !self.kept) {
             lines.push(remedy(min, lowest.distance, &lowest.sensitivities, lowest.cores_meet, unit));
         }
         let others = self.minima.iter().filter(|m| !std::ptr::eq(*m, lowest)).count();
@@ -413,7 +432,9 @@ impl ClearanceFact {
             }),
             ("required", &|f| shown(f.min, &f.unit)),
             ("kept", &|f| {
-                if f.min.is_none() { "-".into() } else { (if f.kept { "yes" } else { "NO" }).into() }
+                let in_words = |kept: bool| if kept { "yes" } else { "NO" };
+                let kept = if f.unknown_at.is_some() { "not known" } else { in_words(f.kept) };
+                f.min.map_or("-", |_| kept).into()
             }),
             ("touching", &|f| {
                 let spans =

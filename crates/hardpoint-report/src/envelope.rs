@@ -2,7 +2,7 @@
 
 use hardpoint::model::{Dimension, Model};
 use hardpoint_file::Units;
-use hardpoint_study::envelope::{Envelope, Request, Sweep};
+use hardpoint_study::envelope::{Envelope, EnvelopeStop, Request, Sweep};
 
 use crate::figures::{count, rounded, unit};
 use crate::record::record;
@@ -50,7 +50,15 @@ record! {
     /// Number of triangles.
     triangles: usize = found.surface.triangles.len();
     /// Reasons why motions ended early: the envelope is that of the positions reached.
-    stops: Vec<String> = found.stops.iter().map(|stop| stop.happened(model)).collect();
+    stops: Vec<String> = found.stops.iter().map(|found| ended(model, found)).collect();
+}
+
+fn ended(model: &Model, EnvelopeStop { stop, end }: &EnvelopeStop) -> String {
+    let happened = stop.happened(model);
+    end.map_or_else(
+        || happened.clone(),
+        |end| format!("{happened}; the envelope has the motion up to t = {} s", rounded(end, DIGITS)),
+    )
 }
 
 impl EnvelopeFact {

@@ -96,9 +96,18 @@ pub struct Envelope {
     /// False if the permitted error was not reached with the maximum numbers of poses and cells.
     pub is_within_error: bool,
     /// Stops of motions that ended early: the envelope is that of the positions that were reached.
-    pub stops: Vec<Stop>,
+    pub stops: Vec<EnvelopeStop>,
     /// Cost of the study.
     pub cost: StudyCost,
+}
+
+/// Reason why a motion of an envelope ended early.
+#[derive(Clone, Debug)]
+pub struct EnvelopeStop {
+    /// The reason.
+    pub stop: Stop,
+    /// Time of the last position of the envelope, s; `None` in a grid.
+    pub end: Option<f64>,
 }
 
 /// Least distance from a shape at all poses, less the margin.
@@ -176,20 +185,18 @@ pub fn envelope(
     more: &(dyn Fn() -> bool + Sync),
 ) -> Result<Envelope, EnvelopeError> {
     let mut cost = StudyCost { designs: 1, ..StudyCost::default() };
-    let poses_of = |motions: &[Positions<'_>], cost: &mut StudyCost| {
-        let mut gathered = Gathered {
-            swept: SweptShape::new(request.shape, request.relative_to),
-            stops: vec![],
-            paths: vec![],
-        };
-        for motion in motions {
+    let poses_of = |motions: &mut [Positions<'_>], cost: &mut StudyCost| {
+        let mut gathered =
+            Gathered { swept: SweptShape::new(request.shape, request.relative_to), paths: vec![] };
+        for motion in motions.iter_mut() {
             gathered.add(model, formulation, design, motion, cost, more)?;
         }
         if !more() {
             return Err(EnvelopeError::Interrupted);
         }
         if gathered.swept.is_empty() {
-            return Err(EnvelopeError::NotReached(gathered.stops.into_iter().next().map(Box::new)));
+            let first = motions.iter().find_map(|motion| motion.stops().first());
+            return Err(EnvelopeError::NotReached(first.map(|found| Box::new(found.stop.clone()))));
         }
         Ok(gathered)
     };
@@ -214,7 +221,7 @@ pub fn envelope(
     for sweep in &request.sweeps {
         motions.push(Positions::first(model, formulation, sweep)?);
     }
-    let mut found = poses_of(&motions, &mut cost)?;
+    let mut found = poses_of(&mut motions, &mut cost)?;
     let radius = found.swept.ball(0).1;
     let mut is_resolved = false;
     for _ in 0..MOST_PASSES {
@@ -226,7 +233,7 @@ pub fn envelope(
             break;
         }
         motions = closer;
-        found = poses_of(&motions, &mut cost)?;
+        found = poses_of(&mut motions, &mut cost)?;
     }
     let extent = 2.0 * (radius + request.margin);
     let error = request.error.unwrap_or(extent * ERROR);
@@ -235,7 +242,7 @@ pub fn envelope(
     let (mut between, mut enough, mut made) = (TRAVEL * radius, false, None);
     for level in 0.. {
         motions = motions.iter().map(|motion| motion.finer(level)).collect();
-        let finer = poses_of(&motions, &mut cost)?;
+        let finer = poses_of(&mut motions, &mut cost)?;
         let Some(surface) = of(&finer.swept, first_cell)? else {
             // More poses take too long.
             if made.is_none() {
@@ -283,17 +290,17 @@ pub fn envelope(
         poses: found.swept.len(),
         error,
         between_poses: between,
-        stops: found.stops,
+        stops: motions.iter().flat_map(Positions::stops).cloned().collect(),
         cost,
     })
 }
 
 /// Positions of a sweep at which the shape is taken.
 enum Positions<'a> {
-    /// Times of a motion of the model.
-    Times { model: Box<Model>, times: Vec<f64> },
+    /// Times of a motion of the model, up to its end.
+    Times { model: Box<Model>, times: Vec<f64>, stops: Vec<EnvelopeStop> },
     /// Values of the drivers of a grid.
-    Grid { grid: &'a Grid, values: [Vec<f64>; 2] },
+    Grid { grid: &'a Grid, values: [Vec<f64>; 2], stops: Vec<EnvelopeStop> },
 }
 
 impl<'a> Positions<'a> {
@@ -305,7 +312,7 @@ impl<'a> Positions<'a> {
                 let model = Model { metrics: Vec::new(), ..own };
                 let within = Analysis::with(&model, formulation)?.swept_times();
                 let times = if within.len() > MOST_POSES { model.times.clone() } else { within };
-                Self::Times { model: Box::new(model), times }
+                Self::Times { model: Box::new(model), times, stops: Vec::new() }
             }
             Sweep::Grid(grid) => {
                 let fine = |k: usize| {
@@ -314,32 +321,44 @@ impl<'a> Positions<'a> {
                     let longest = DRIVER_TRAVEL * if is_length { model.size() } else { 1.0 };
                     divided(&grid.values[k], |_, h| h.abs() / longest)
                 };
-                Self::Grid { grid, values: [fine(0), fine(1)] }
+                Self::Grid { grid, values: [fine(0), fine(1)], stops: Vec::new() }
             }
         })
+    }
+
+    /// Reasons why motions ended early.
+    fn stops(&self) -> &[EnvelopeStop] {
+        match self {
+            Self::Times { stops, .. } | Self::Grid { stops, .. } => stops,
+        }
     }
 
     /// With times between those among which the shape travels farther than this.
     fn closer(&self, path: &[[f64; 2]], longest: f64) -> Self {
         match self {
-            Self::Times { model, times } => {
+            Self::Times { model, times, stops } => {
                 let reach = |k: usize, h: f64| match path.get(k..k + 2) {
                     Some([[_, from], [_, to]]) => h * from.max(*to) / longest,
                     Some(_) | None => 1.0,
                 };
-                Self::Times { model: model.clone(), times: divided(times, reach) }
+                Self::Times { model: model.clone(), times: divided(times, reach), stops: stops.clone() }
             }
             // Positions of a grid have no speeds.
-            Self::Grid { grid, values } => Self::Grid { grid, values: values.clone() },
+            Self::Grid { grid, values, stops } => {
+                Self::Grid { grid, values: values.clone(), stops: stops.clone() }
+            }
         }
     }
 
     /// With a further position in each interval.
     fn finer(&self, level: u32) -> Self {
         match self {
-            Self::Times { model, times } => Self::Times { model: model.clone(), times: halved(times, level) },
-            Self::Grid { grid, values } => {
-                Self::Grid { grid, values: values.each_ref().map(|values| halved(values, level)) }
+            Self::Times { model, times, stops } => {
+                Self::Times { model: model.clone(), times: halved(times, level), stops: stops.clone() }
+            }
+            Self::Grid { grid, values, stops } => {
+                let values = values.each_ref().map(|values| halved(values, level));
+                Self::Grid { grid, values, stops: stops.clone() }
             }
         }
     }
@@ -352,27 +371,27 @@ impl<'a> Positions<'a> {
     }
 }
 
-/// Poses of a shape, and the stops of motions that ended early.
+/// Poses of a shape.
 struct Gathered {
     swept: SweptShape,
-    stops: Vec<Stop>,
     /// Per sweep: times that were solved, and bounds of the speeds of the shape's points; none of a grid.
     paths: Vec<Vec<[f64; 2]>>,
 }
 
 impl Gathered {
+    /// Adds the poses at some positions; those of a motion that ends early are changed to end there.
     fn add(
         &mut self,
         model: &Model,
         formulation: Formulation,
         design: &[f64],
-        positions: &Positions<'_>,
+        positions: &mut Positions<'_>,
         cost: &mut StudyCost,
         more: &(dyn Fn() -> bool + Sync),
     ) -> Result<(), TopologyError> {
         let mut path = Vec::new();
         match positions {
-            Positions::Times { model, times } => {
+            Positions::Times { model, times, stops } => {
                 let moved = Model { times: times.clone(), ..(**model).clone() };
                 let analysis = Analysis::with(&moved, formulation)?;
                 let go_on = |_| if more() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
@@ -380,30 +399,46 @@ impl Gathered {
                 let solution = analysis.solve(run);
                 cost.motions += 1;
                 cost.steps += solution.motion.len();
-                let steps = 0..solution.motion.len();
-                let speeds = self.swept.add(&analysis, design, &solution.motion, steps);
-                path.extend(solution.motion.times.iter().zip(speeds).map(|(time, speed)| [*time, speed]));
-                self.note(solution.stop.as_ref());
+                let to_end = analysis.motion_to_end(design, &solution);
+                let motion = to_end.as_ref().unwrap_or(&solution.motion);
+                let speeds = self.swept.add(&analysis, design, motion, 0..motion.len());
+                path.extend(motion.times.iter().zip(speeds).map(|(time, speed)| [*time, speed]));
+                if let Some(stop) = noted(solution.stop.as_ref()) {
+                    if motion.len() > 1 {
+                        times.clone_from(&motion.times);
+                    }
+                    // Of a motion up to there nothing stops before its last time: the reason is known already.
+                    *stops = vec![EnvelopeStop { stop, end: motion.times.last().copied() }];
+                }
             }
-            Positions::Grid { grid, values } => {
+            Positions::Grid { grid, values, stops } => {
                 let finer = Grid { values: values.clone(), ..(*grid).clone() };
+                stops.clear();
                 each_half_row(model, &finer, formulation, design, more, |half| {
                     cost.motions += 1;
                     cost.steps += half.solution.motion.len();
                     let reached = half.steps().map(|(_, k)| k);
                     let steps: Vec<usize> = reached.filter(|k| *k < half.solution.motion.len()).collect();
+                    // A row that ends beyond one of its positions has those up to its end.
+                    let to_end = half.analysis.motion_to_end(design, half.solution);
+                    let to_end = to_end.filter(|_| !steps.is_empty());
                     self.swept.add(half.analysis, design, &half.solution.motion, steps.into_iter());
-                    self.note(half.solution.stop.as_ref());
+                    if let Some(motion) = &to_end {
+                        self.swept.add(half.analysis, design, motion, motion.len() - 1..motion.len());
+                    }
+                    let stop = noted(half.solution.stop.as_ref());
+                    stops.extend(stop.map(|stop| EnvelopeStop { stop, end: None }));
                 })?;
             }
         }
         self.paths.push(path);
         Ok(())
     }
+}
 
-    fn note(&mut self, stop: Option<&Stop>) {
-        self.stops.extend(stop.filter(|s| !matches!(s.kind, StopKind::Interrupted)).cloned());
-    }
+/// A stop that is no interruption.
+fn noted(stop: Option<&Stop>) -> Option<Stop> {
+    stop.filter(|s| !matches!(s.kind, StopKind::Interrupted)).cloned()
 }
 
 /// Values with others between them: interval k of length h is divided into `parts(k, h)` equal pieces, rounded up.

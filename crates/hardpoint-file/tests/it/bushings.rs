@@ -642,7 +642,7 @@ at = [0, 1]
 
 #[test]
 fn a_compliance_without_a_value_has_no_derivatives() {
-    let file = parsed(
+    let model = model_of(
         r#"
 name = "door"
 units = { length = "mm", angle = "deg" }
@@ -659,7 +659,7 @@ design.C = { move = "C", along = "z" }
 time = { at = [0, 1] }
 "#,
     );
-    let solution = Analysis::new(&file.model).unwrap().run();
+    let solution = Analysis::new(&model).unwrap().run();
     let m = solution.measured.index("compliance").unwrap();
     for k in 0..2 {
         assert!(solution.measured.value(k, m)[0].is_nan());

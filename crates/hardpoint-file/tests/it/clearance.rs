@@ -6,6 +6,8 @@ use hardpoint::run::{ClearanceProof, Clearances, MinimumPlace, PairClearance};
 use hardpoint_file::parse;
 use serde_json::Value;
 
+use crate::proof::numbers;
+
 /// Round-off of distances in mm, and of times in s, at values of 10 to 100.
 const EXACT: f64 = 1e-10;
 /// Tolerance of the limits of an optimisation, m.
@@ -941,5 +943,107 @@ fn a_law_without_rates_at_a_moment_ends_the_clearances_there() {
             let claim = pair.least().unwrap().at.distance[0] - 1e-3;
             _ = prover.prove(pair.shapes, claim);
         }
+    }
+}
+
+/// A slide with a cylinder along y on it, and a box on the ground.
+fn tyre_and_wall(law: &str, steps: usize, shapes: &str) -> Model {
+    model_of(&format!(
+        "name = \"c\"\nunits = {{ length = \"mm\", angle = \"deg\" }}\ntime = {{ end = 1.0, steps = {steps} }}\n\
+         bodies = {{ m = {{}} }}\n\
+         joints.s = {{ type = \"translational\", bodies = [\"ground\", \"m\"], at = [0, 0, 0], axis = \"x\" }}\n\
+         drivers.d = {{ joint = \"s\", law = \"{law}\" }}\nparameters.r = {{ value = 30, unit = \"length\" }}\n\
+         [shapes]\n{shapes}"
+    ))
+}
+
+/// Distances of cylinders from boxes with edges parallel to their axes are those of rectangles in the plane.
+#[test]
+fn a_cylinder_beside_parallel_edges_of_a_box_has_the_distance_of_a_plane_figure() {
+    let mut next = numbers(7);
+    let mut shapes = String::new();
+    let mut clearances = String::new();
+    let mut expected = Vec::new();
+    let mut whole = |low: f64, high: f64| (low + (high - low) * next()).round();
+    for k in 0..200 {
+        let size = [0; 3].map(|_| whole(5.0, 100.0));
+        let [x, y, z] = [0; 3].map(|_| whole(-200.0, 200.0));
+        let (half, radius) = (whole(3.0, 40.0), whole(5.0, 60.0));
+        let beyond = |at: f64, size: f64| (at.abs() - 0.5 * size).max(0.0);
+        let beside = (beyond(x, size[0]).hypot(beyond(z, size[2])) - radius).max(0.0);
+        let distance = beside.hypot((beyond(y, size[1]) - half).max(0.0));
+        expected.push(distance);
+        let (from, to) = (y - half, y + half);
+        shapes += &format!(
+            "a{k} = {{ body = \"ground\", box = {size:?} }}\n\
+             b{k} = {{ body = \"m\", cylinder = [[{x}, {from}, {z}], [{x}, {to}, {z}]], radius = {radius} }}\n"
+        );
+        clearances += &format!("[clearances.c{k}]\nbetween = [\"a{k}\", \"b{k}\"]\n");
+    }
+    // The wall of a landing gear's bay, and a tyre along all of it.
+    shapes += "a200 = { body = \"ground\", box = [76, 54, 34] }\n\
+               b200 = { body = \"m\", cylinder = [[-165, 6, 192], [-165, 14, 192]], radius = 36 }\n";
+    clearances += "[clearances.c200]\nbetween = [\"a200\", \"b200\"]\n";
+    expected.push(127f64.hypot(175.0) - 36.0);
+    let model = tyre_and_wall("0*t", 1, &(shapes + &clearances));
+    let found = Analysis::new(&model).unwrap().clearances(&[]);
+    let mut apart = 0;
+    for (clearance, expected) in model.clearances.iter().zip(expected) {
+        let (_, pair) = found.of(clearance).next().unwrap();
+        let least = pair.least().unwrap().at.distance[0] * 1e3;
+        if expected > 0.0 {
+            apart += 1;
+            assert_near(least, expected, &clearance.name);
+        } else {
+            assert!(least <= EXACT, "{}: {least}", clearance.name);
+        }
+    }
+    assert!(apart > 150, "{apart}");
+}
+
+#[test]
+fn a_cylinder_that_slides_past_parallel_edges_has_rates_and_derivatives() {
+    let shapes = r#"
+box = { body = "ground", box = [4, 90, 30] }
+drum = { body = "m", cylinder = [[100, -10, 100], [100, 10, 100]], radius = "r" }
+other = { body = "m", box = [20, 30, 40], frame = { position = [112, 5, 120] } }
+[clearances.of_drum]
+between = ["drum", "box"]
+[clearances.of_boxes]
+between = ["other", "box"]
+"#;
+    let model = tyre_and_wall("20*t", 10, shapes);
+    let found = Analysis::new(&model).unwrap().clearances(&[]);
+    for (clearance, radius) in [("of_drum", 30.0), ("of_boxes", 0.0)] {
+        let pair = pair(&model, &found, clearance);
+        let (x, z) = if radius > 0.0 { (98.0, 85.0) } else { (100.0, 85.0) };
+        for at in &pair.curve {
+            let across: f64 = x + 20.0 * at.time;
+            let apart = across.hypot(z);
+            let rate = 20.0 * across / apart;
+            let expected = [apart - radius, rate, (400.0 - rate * rate) / apart];
+            for (found, expected) in at.distance.iter().zip(expected) {
+                assert_near(found * 1e3, expected, &format!("{clearance} at {}", at.time));
+            }
+        }
+        let [least] = &pair.minima[..] else { panic!("{:?}", pair.minima) };
+        assert_eq!(least.place, MinimumPlace::Start);
+        assert_near(least.at.distance[0] * 1e3, f64::hypot(x, z) - radius, clearance);
+        let by_radius = least.d[model.variable("r").unwrap().0];
+        assert_near(by_radius, if radius > 0.0 { -1.0 } else { 0.0 }, clearance);
+    }
+}
+
+#[test]
+fn shapes_that_touch_at_one_end_of_the_motion_only_are_listed_there() {
+    for (law, time) in [("20*t", 0.0), ("20*(1 - t)", 1.0), ("20*(2*t - 1)^2", 0.5)] {
+        let shapes = "a = { body = \"ground\", sphere = [0, 0, 0], radius = 5 }\n\
+                      b = { body = \"m\", sphere = [10, 0, 0], radius = 5 }\n\
+                      [clearances.c]\nbetween = [\"a\", \"b\"]\n";
+        let model = tyre_and_wall(law, 10, shapes);
+        let found = Analysis::new(&model).unwrap().clearances(&[]);
+        let touching = pair(&model, &found, "c").intervals();
+        let [[from, to]] = touching[..] else { panic!("{law}: {touching:?}") };
+        assert!((from - time).abs() <= 1e-8 && (to - time).abs() <= 1e-8, "{law}: {touching:?}");
     }
 }

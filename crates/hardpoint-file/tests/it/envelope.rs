@@ -301,3 +301,67 @@ fn the_error_of_a_turning_box_includes_what_its_corners_leave_out() {
         assert!((volume - exact).abs() < found.surface.area() * found.error, "{steps}: {volume} {exact}");
     }
 }
+
+/// A ball of radius 5 mm on a slide whose displacement ends at 17.3 mm.
+fn stopped_slide(steps: usize, more: &str) -> Model {
+    let text = format!(
+        r#"
+name = "slide"
+units = {{ length = "mm", angle = "deg" }}
+time = {{ end = 1, steps = {steps} }}
+bodies = {{ slider = {{}}, arm = {{}} }}
+joints.slide = {{ type = "translational", bodies = ["ground", "slider"], axis = "x", at = [0, 0, 0], limits.displacement = {{ max = 17.3, stop = true }} }}
+joints.hinge = {{ type = "revolute", bodies = ["slider", "arm"], axis = "x", at = [0, 0, 0] }}
+drivers.push = {{ joint = "slide", law = "40*t" }}
+drivers.turn = {{ joint = "hinge", law = "0*t" }}
+shapes.ball = {{ body = "slider", sphere = [0, 0, 0], radius = 5 }}
+{more}"#
+    );
+    parse(&text, "slide.toml").unwrap_or_else(|e| panic!("{e}")).model
+}
+
+#[test]
+fn the_envelope_of_a_motion_that_a_limit_ends_reaches_the_limit_at_any_output_times() {
+    let grid = "[cases.both]\ngrid = { push = { from = 0, to = 40, steps = 3 }, turn = { from = -10, to = 10, steps = 2 } }\n";
+    let exact = capsule(0.005, 0.0173);
+    let request = || Overrides { shape: "ball".into(), error: Some(2e-4), ..Overrides::default() };
+    for (steps, more) in [(1, ""), (3, ""), (10, ""), (400, ""), (5, grid)] {
+        let found = envelope_of(&stopped_slide(steps, more), request());
+        assert!(found.is_within_error && !found.stops.is_empty(), "{steps} steps: {:?}", found.stops);
+        let volume = found.surface.volume();
+        assert!(volume > 0.985 * exact && volume < 1.001 * exact, "{steps} steps {more}: {volume} {exact}");
+        let highest = found.surface.vertices.iter().map(|p| p.x).fold(0.0, f64::max);
+        assert!((highest - 0.0223).abs() < 2e-4, "{steps} steps {more}: {highest}");
+        for stop in &found.stops {
+            let end = stop.end.map(|end| (end - 17.3 / 40.0).abs() < 1e-9);
+            assert_eq!(end, more.is_empty().then_some(true), "{stop:?}");
+        }
+    }
+}
+
+#[test]
+fn the_envelope_of_a_motion_that_ends_at_a_dead_point_reaches_its_last_position() {
+    // The rod and the crank are in line when the slider has gone 30 mm.
+    let text = r#"
+name = "stretched"
+units = { length = "mm", angle = "deg" }
+time = { end = 1, steps = 2 }
+hardpoints = { A = [0, 0, 0], B = [18.75, 46.351240544347896, 0], C = [120, 0, 0] }
+bodies = { crank = {}, rod = {}, slider = {} }
+joints.A = { type = "revolute", bodies = ["ground", "crank"], at = "A", axis = "z" }
+joints.B = { type = "revolute", bodies = ["crank", "rod"], at = "B", axis = "z" }
+joints.C = { type = "revolute", bodies = ["rod", "slider"], at = "C", axis = "z" }
+joints.slide = { type = "translational", bodies = ["ground", "slider"], axis = "x", at = "C" }
+drivers.push = { joint = "slide", law = "80*t" }
+shapes.ball = { body = "slider", sphere = "C", radius = 5 }
+"#;
+    let model = parse(text, "stretched.toml").unwrap_or_else(|e| panic!("{e}")).model;
+    let found =
+        envelope_of(&model, Overrides { shape: "ball".into(), error: Some(2e-4), ..Overrides::default() });
+    let reach = 46.351240544347896_f64.hypot(18.75) + 46.351240544347896_f64.hypot(101.25) - 120.0;
+    let [stop] = &found.stops[..] else { panic!("{:?}", found.stops) };
+    assert!((stop.end.unwrap() - reach / 80.0).abs() < 1e-4, "{stop:?} {reach}");
+    let exact = capsule(0.005, reach * 1e-3);
+    let volume = found.surface.volume();
+    assert!(found.is_within_error && volume > 0.985 * exact && volume < 1.001 * exact, "{volume} {exact}");
+}

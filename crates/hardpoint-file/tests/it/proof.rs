@@ -2,7 +2,7 @@
 
 use hardpoint::Analysis;
 use hardpoint::model::{Model, ShapeId};
-use hardpoint::run::{ClearanceProof, ClearanceProver, Run};
+use hardpoint::run::{ClearanceProof, ClearanceProver, ProofFailure, Run};
 use hardpoint_file::parse;
 
 /// Allowance for round-off, as a fraction of the mechanism's size.
@@ -247,5 +247,76 @@ fn positions_far_from_all_output_times_are_found() {
         let least = pair.least().unwrap().at.distance[0];
         let proof = prover.prove(pair.shapes, least - 1e-5 * model.size());
         assert!(matches!(proof, ClearanceProof::Proved { .. }), "{:?}: {proof:?}", pair.shapes);
+    }
+}
+
+/// Four-bars whose crank turns by more than a turn between two output times: start of the motion, law, and shapes.
+fn turning_four_bar([b, c, d]: [[f64; 2]; 3], (law, steps): (&str, usize), shapes: &str) -> Model {
+    model_of(&format!(
+        "name = \"four-bar\"\nunits = {{ length = \"mm\", angle = \"deg\" }}\nplanar = \"xy\"\n\
+         time = {{ end = 1.0, steps = {steps} }}\n\
+         hardpoints = {{ A = [0, 0], B = {b:?}, C = {c:?}, D = {d:?} }}\n\
+         bodies = {{ ground = [\"A\", \"D\"], crank = [\"A\", \"B\"], coupler = [\"B\", \"C\"], rocker = [\"C\", \"D\"] }}\n\
+         drivers.m = {{ joint = \"A\", law = \"{law}\" }}\n[shapes]\n{shapes}"
+    ))
+}
+
+#[test]
+fn a_motion_of_two_turns_between_two_output_times_is_proved_every_time() {
+    let places = [
+        [32.61370540980185, 18.084006308436173],
+        [118.24955404121644, -21.44618317609833],
+        [54.631083053087366, 21.675303282769917],
+    ];
+    let shapes = r#"
+cp = { body = "coupler", capsule = [[32.61370540980185, 18.084006308436173, -3], [118.24955404121644, -21.44618317609833, 6]], radius = 1.4 }
+rk = { body = "rocker", capsule = [[118.24955404121644, -21.44618317609833, 3], [54.631083053087366, 21.675303282769917, 7]], radius = 5.8 }
+sc = { body = "ground", capsule = [[144.6, -29.5, -3.3], [169, -19.3, 11.4]], radius = 3.8 }
+ck = { body = "crank", capsule = [[-20.8, 4.4, 12.5], [-19, 24.1, 29.6]], radius = 1 }
+[clearances]
+c = { between = ["cp", "sc"] }
+r = { between = ["rk", "sc"] }
+k = { between = ["ck", "rk"] }
+"#;
+    let model = turning_four_bar(places, ("-650.9504831987459*t", 1), shapes);
+    let analysis = Analysis::new(&model).unwrap();
+    let found = analysis.clearances(&[]);
+    let mut first = None;
+    for _ in 0..4 {
+        let mut prover = analysis.clearance_prover(&[]).unwrap();
+        let proofs: Vec<ClearanceProof> = (found.pairs.iter())
+            .map(|pair| {
+                prover.prove(pair.shapes, pair.least().unwrap().at.distance[0] - 1e-12 * model.size())
+            })
+            .collect();
+        assert!(proofs.iter().all(|proof| matches!(proof, ClearanceProof::Proved { .. })), "{proofs:?}");
+        assert_eq!(first.get_or_insert_with(|| proofs.clone()), &proofs);
+    }
+}
+
+#[test]
+fn nothing_is_proved_where_cores_meet_and_that_is_the_reason() {
+    let places = [
+        [-24.02804015987379, -7.849589353101685],
+        [-6.894766014263439, 39.38538858555558],
+        [62.56108547814786, 27.575348503598057],
+    ];
+    let shapes = r#"
+rk = { body = "rocker", capsule = [[-6.894766014263439, 39.38538858555558, -3.039843153273056], [62.56108547814786, 27.575348503598057, 3.862164132585818]], radius = 4.40591749210539 }
+sc = { body = "ground", capsule = [[19.35837533289236, 59.561268077942614, 0.9296177216416623], [21.291308914830108, 41.74992900868929, -4.966734458377626]], radius = 4.317616690504298 }
+[clearances]
+r = { between = ["rk", "sc"] }
+"#;
+    let model = turning_four_bar(places, ("-536.9504780485019*t", 3), shapes);
+    let analysis = Analysis::new(&model).unwrap();
+    let found = analysis.clearances(&[]);
+    let least = found.pairs[0].least().unwrap();
+    assert!(least.at.cores_meet);
+    let mut prover = analysis.clearance_prover(&[]).unwrap();
+    for allowance in [1e-12, 1e-5] {
+        let claim = least.at.distance[0] - allowance * model.size();
+        let proof = prover.prove(found.pairs[0].shapes, claim);
+        let is_meeting = matches!(proof, ClearanceProof::NotProved { reason: ProofFailure::CoresMeet, .. });
+        assert!(is_meeting, "{allowance}: {proof:?}");
     }
 }

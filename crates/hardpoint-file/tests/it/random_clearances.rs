@@ -281,7 +281,9 @@ fn examine(
             tally.meeting += 1;
             return;
         }
-        ClearanceProof::NotProved { reason: ProofFailure::Unresolved, .. } => tally.unresolved += 1,
+        ClearanceProof::NotProved { reason: ProofFailure::Unresolved | ProofFailure::CoresMeet, .. } => {
+            tally.unresolved += 1;
+        }
         ClearanceProof::NotProved { reason: ProofFailure::WithinRing, .. } => tally.within_ring += 1,
         ClearanceProof::NotProved { reason: ProofFailure::Motion(_), .. } => tally.of_motion += 1,
         ClearanceProof::NotProved {

@@ -47,7 +47,7 @@ record! {
         let length = |x: f64| units.from_si(Dimension::LENGTH, x);
         let least = found.minima.first().map(|m| m.at);
         // Where the cores meet, the shapes are at least as deep in each other as their distance.
-        let below = |min: f64| least.is_some_and(|at| at.cores_meet || at.distance[0] < min - KEPT * model.size());
+        let below = |min: f64| least.is_some_and(|at| at.cores_meet || !(at.distance[0] >= min - KEPT * model.size()));
     }
     /// Name of the clearance.
     clearance: String = clearance.name.clone();
@@ -59,7 +59,7 @@ record! {
     least: Option<f64> = least.map(|at| length(at.distance[0]));
     /// Distance that is required.
     min: Option<f64> = pair.min.map(length);
-    /// False if the least distance is below the required one.
+    /// False if the least distance is below the required one, or not known.
     kept: bool = !pair.min.is_some_and(below);
     /// True if the distance is the same at all positions.
     constant: bool = found.is_constant;
@@ -172,6 +172,9 @@ impl GridPairFact {
             return vec![format!("{clearance}: no position was reached")];
         };
         let at = if self.constant { "everywhere".into() } else { format!("at {}", lowest.position) };
+        if lowest.distance.is_nan() {
+            return vec![format!("{clearance}: the distance of {a} and {b} is not known {at}")];
+        }
         let mut lines = Vec::new();
         if lowest.distance < 0.0 {
             let depth = if lowest.cores_meet {

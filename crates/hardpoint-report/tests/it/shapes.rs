@@ -6,6 +6,7 @@ use hardpoint::Analysis;
 use hardpoint::run::Run;
 use hardpoint::space::{Mat3, Quat, Vec3};
 use hardpoint_file::ModelFile;
+use hardpoint_report::clearance::ClearanceFact;
 use hardpoint_report::course::Course;
 use hardpoint_report::page::{BodyTrack, PairTrack, Payload, ShapeMark};
 use hardpoint_report::payload::{ChangedDesign, Request, payload};
@@ -155,4 +156,21 @@ fn a_model_without_shapes_carries_nothing_of_them() {
     let page = page_of(&model("macpherson.toml"));
     assert!(page.clearance.is_none());
     assert!(!page.notes.iter().any(|note| note.contains("clearance")));
+}
+
+#[test]
+fn a_distance_that_is_not_known_is_not_kept() {
+    let file = model("studies/knee.toml");
+    let mut found = Analysis::new(&file.model).unwrap().clearances(&[]);
+    let unknown = found.pairs.iter_mut().find(|pair| pair.least().is_some_and(|m| m.at.distance[0] > 0.0));
+    let unknown = unknown.expect("a pair that is apart");
+    let shapes = unknown.shapes.map(|s| file.model.shapes[s.0].name.clone());
+    unknown.curve[3].distance = [f64::NAN; 3];
+    let time = unknown.curve[3].time;
+    let facts = ClearanceFact::all(&file.model, file.units, &found);
+    let k = facts.iter().position(|fact| fact.shapes == shapes).unwrap();
+    assert!(!facts[k].kept, "{:?}", facts[k].min);
+    let sentences = ClearanceFact::sentences(&facts[k..=k]).join("\n");
+    let expected = format!("the distance of {} and {} is not known at t = {time} s", shapes[0], shapes[1]);
+    assert!(sentences.contains(&expected), "{sentences}");
 }

@@ -32,6 +32,8 @@ pub(crate) enum Feature {
     Vertex(u32),
     /// The line of an edge of a surface, between two corners.
     Edge([u32; 2]),
+    /// The point at this fraction of an edge of a surface, between two corners: one of many that are equally near.
+    EdgePoint([u32; 2], f64),
     /// The plane of a facet of a surface.
     Facet([u32; 3]),
 }

@@ -376,6 +376,22 @@ impl Drum {
         }
     }
 
+    /// Middle of the part of a segment, from 0 to 1, all of whose points are nearest to the side, as that at t is, or
+    /// deepest within it; `None` if the segment is not parallel to the axis.
+    fn middle_beside(&self, [a, b]: [Vec3; 2], t: f64) -> Option<f64> {
+        let e = b - a;
+        let across = self.middle.axis.cross(e);
+        if across.dot(across) > PARALLEL * PARALLEL * e.dot(e) {
+            return None;
+        }
+        let (height, rho, _) = self.cylindrical(a);
+        // Within the cylinder, a point near a cap is less deep.
+        let reach = self.half_width + (rho - self.middle.radius).min(0.0);
+        let [u, v] = [-reach, reach].map(|z| (z - height) / self.middle.axis.dot(e));
+        let (from, to) = (u.min(v).max(0.0), u.max(v).min(1.0));
+        Some(if reach > 0.0 && from < to { 0.5 * (from + to) } else { t })
+    }
+
     /// The feature that a point is nearest to, the nearest point there, and the distance.
     fn nearest(&self, p: Vec3) -> (Feature, Vec3, f64) {
         let (z, rho, out) = self.cylindrical(p);
@@ -402,14 +418,23 @@ pub(super) fn segment_and_cylinder([a, b]: [Vec3; 2], drum: &Drum) -> Nearest {
     let is_end = |end: f64, best: f64| depth(end) <= depth(best) || (end - best).abs() < AT_END;
     t = [0.0, 1.0].into_iter().fold(t, |best, end| if is_end(end, best) { end } else { best });
     // Over a cap, and along a side, all points of a parallel segment are nearest: the middle of them.
-    let is_parallel = [0.0, 0.25, 0.75, 1.0]
+    let mut is_parallel = [0.0, 0.25, 0.75, 1.0]
         .into_iter()
         .all(|t| (depth(t) - depth(0.5)).abs() <= PARALLEL * (b - a).norm());
     if is_parallel {
         t = 0.5;
     }
-    let (feature, q, distance) = drum.nearest(at(t));
-    let is_inside = t > 0.0 && t < 1.0 && !is_parallel;
+    let (mut feature, mut q, mut distance) = drum.nearest(at(t));
+    let mut is_inside = t > 0.0 && t < 1.0 && !is_parallel;
+    if is_inside
+        && feature == Feature::Line
+        && let Some(middle) = drum.middle_beside([a, b], t)
+    {
+        // The segment goes on beyond a cap.
+        t = middle;
+        (feature, q, distance) = drum.nearest(at(t));
+        (is_parallel, is_inside) = (true, false);
+    }
     // Over a cap, beside a parallel side, and at the edge between both within the cylinder, the point stays where it
     // is.
     let slides = is_inside
@@ -420,6 +445,7 @@ pub(super) fn segment_and_cylinder([a, b]: [Vec3; 2], drum: &Drum) -> Nearest {
             | Feature::Point(_)
             | Feature::Vertex(_)
             | Feature::Edge(_)
+            | Feature::EdgePoint(..)
             | Feature::Facet(_) => false,
         };
     let own = if slides { Feature::Line } else { Feature::Point(t) };
@@ -432,8 +458,7 @@ fn is_stationary([a, b]: [Vec3; 2], drum: &Drum, t: f64) -> bool {
     let e = b - a;
     let (_, rho, out) = drum.cylindrical(a + e * t);
     // Golden section finds the place of a minimum to the square root of the resolution of its values.
-    let is_parallel = drum.middle.axis.cross(e).norm() <= PARALLEL * e.norm();
-    !is_parallel && out.dot(e).abs() <= f64::EPSILON.sqrt() * 10.0 * rho.max(e.norm()) * e.norm()
+    out.dot(e).abs() <= f64::EPSILON.sqrt() * 10.0 * rho.max(e.norm()) * e.norm()
 }
 
 /// A convex solid around a path.

@@ -65,6 +65,10 @@ impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
         let placed = match feature {
             Feature::Vertex(k) => Placed::Point(vertex(k)),
             Feature::Edge([a, b]) => Placed::Line { from: vertex(a), along: vertex(b) - vertex(a) },
+            Feature::EdgePoint([a, b], at) => {
+                let from = vertex(a);
+                Placed::Point((vertex(b) - from).times_plus(T::constant(at), from))
+            }
             Feature::Facet(corners) => {
                 let [a, b, c] = corners.map(vertex);
                 let normal = (b - a).cross(c - a);

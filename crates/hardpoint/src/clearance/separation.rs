@@ -79,7 +79,8 @@ impl Direction {
             | Feature::Line
             | Feature::Circle(_)
             | Feature::Vertex(_)
-            | Feature::Edge(_) => None,
+            | Feature::Edge(_)
+            | Feature::EdgePoint(..) => None,
         })
     }
 }

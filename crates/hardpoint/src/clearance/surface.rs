@@ -151,6 +151,7 @@ impl Surroundings for Within<'_> {
                 part.lowest_corner(|p| -from_point(p, &edge).distance)
             }
             Feature::Vertex(_)
+            | Feature::EdgePoint(..)
             | Feature::Point(_)
             | Feature::Line
             | Feature::Circle(_)
@@ -182,12 +183,14 @@ fn of_edge(feature: Feature, ends: [u32; 2]) -> Feature {
     match feature {
         Feature::Point(at) if at <= 0.0 => Feature::Vertex(ends[0]),
         Feature::Point(at) if at >= 1.0 => Feature::Vertex(ends[1]),
-        // A point within an edge, where both are parallel.
-        Feature::Point(_) | Feature::Line => Feature::Edge(ends),
+        // Where both are parallel: two lines have no distance then.
+        Feature::Point(at) => Feature::EdgePoint(ends, at),
+        Feature::Line => Feature::Edge(ends),
         other @ (Feature::Circle(_)
         | Feature::Face(_)
         | Feature::Vertex(_)
         | Feature::Edge(_)
+        | Feature::EdgePoint(..)
         | Feature::Facet(_)) => other,
     }
 }

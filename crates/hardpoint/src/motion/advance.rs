@@ -255,7 +255,7 @@ pub(super) fn laws_are_resolved(one: &mut Stepper<'_>, t: f64) -> bool {
 
 /// Largest move (rad, or sizes) over a step h, by speed and acceleration.
 #[inline(always)]
-fn expected_move(mechanism: &Mechanism<'_>, h: f64) -> f64 {
+pub(super) fn expected_move(mechanism: &Mechanism<'_>, h: f64) -> f64 {
     let Mechanism { topology, saved, .. } = mechanism;
     let half = 0.5 * h;
     let mut most = 0.0;

@@ -27,7 +27,7 @@
 //! The proof holds for the mechanism whose geometry is that of the solver, to the last bit, and whose laws are the
 //! formulas of their numbers. Rows that are redundant and not selected have no part in it.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::rc::Rc;
 
 use crate::law::TimeJet;
@@ -37,12 +37,14 @@ use crate::number::{Interval, Jet};
 use crate::space::{Mat3, Pose, Quat, Real, Vec3};
 use crate::topology::{BlockId, CoordinateId, Topology};
 
+use super::advance::expected_move;
 use super::contraction::{
     BlockSolver, CONTRACTION, Contracted, Contraction, LEAST_BOX, SLACK, inverse_of, is_within,
 };
 use super::mechanism::{AcceptedPosition, Mechanism};
 use super::parts::PlanGeometry;
 use super::path::Path;
+use super::path_step::trust;
 
 /// Maximum number of halvings of a step from one position to another: a 64th is far shorter than any step of a motion.
 const MOST_STEP_HALVINGS: u32 = 6;
@@ -301,22 +303,24 @@ fn narrowed_vector(
 pub struct ProvenMotion<'m> {
     mechanism: Mechanism<'m>,
     solver: TubeSolver,
-    /// Positions at output times.
-    outputs: Vec<OutputPosition>,
+    /// Positions at output times, and at others between them.
+    positions: Vec<SolvedPosition>,
     /// Plans with the different selections of independent rows along the motion.
     plans: Vec<Topology>,
     /// Enclosures at single times, with their positions, by plan and time.
-    instants: HashMap<(usize, u64), Result<Rc<Instant>, TubeFailure>>,
+    instants: BTreeMap<(usize, u64), Result<Rc<Instant>, TubeFailure>>,
     slabs: HashMap<[u64; 2], Result<Rc<Slab>, TubeFailure>>,
     /// Number of enclosures over intervals that were computed.
     computed: usize,
 }
 
-/// A position of the motion at an output time.
-pub(crate) struct OutputPosition {
+/// A position of the motion.
+pub(crate) struct SolvedPosition {
     pub at: AcceptedPosition,
     /// Index of the plan by which it goes on from there.
     pub plan: usize,
+    /// True at an output time, and at the end.
+    pub is_output: bool,
 }
 
 /// One time of a motion.
@@ -345,10 +349,14 @@ pub(crate) struct Slab {
 
 impl<'m> ProvenMotion<'m> {
     /// Motion through these positions of a mechanism.
-    pub(crate) fn new(mechanism: Mechanism<'m>, outputs: Vec<OutputPosition>, plans: Vec<Topology>) -> Self {
+    pub(crate) fn new(
+        mechanism: Mechanism<'m>,
+        positions: Vec<SolvedPosition>,
+        plans: Vec<Topology>,
+    ) -> Self {
         let solver = TubeSolver::new(mechanism.model, &mechanism.topology, &mechanism.parts);
-        let (instants, slabs) = (HashMap::new(), HashMap::new());
-        Self { mechanism, solver, outputs, plans, instants, slabs, computed: 0 }
+        let (instants, slabs) = (BTreeMap::new(), HashMap::new());
+        Self { mechanism, solver, positions, plans, instants, slabs, computed: 0 }
     }
 
     /// The model of the mechanism.
@@ -358,7 +366,7 @@ impl<'m> ProvenMotion<'m> {
 
     /// Output times that the motion reaches.
     pub fn times(&self) -> impl Iterator<Item = f64> + '_ {
-        self.outputs.iter().map(|output| output.at.time)
+        self.positions.iter().filter(|position| position.is_output).map(|output| output.at.time)
     }
 
     /// Number of enclosures over intervals of time that were computed: the effort.
@@ -384,11 +392,13 @@ impl<'m> ProvenMotion<'m> {
         self.instant(plan, t).map(|instant| instant.enclosure.poses.clone())
     }
 
-    /// Times between two others at which rates of laws may jump.
+    /// Times between two others at which rates of laws may jump, or the plan changes.
     pub fn cuts(&self, from: f64, to: f64) -> Vec<f64> {
         let drivers = 0..self.mechanism.model.drivers.len();
         let mut cuts: Vec<f64> =
             drivers.flat_map(|d| self.mechanism.parts.law_of(d).cuts(from, to)).collect();
+        let pairs = self.positions.windows(2).filter(|pair| pair[0].plan != pair[1].plan);
+        cuts.extend(pairs.map(|pair| pair[1].at.time).filter(|t| from < *t && *t < to));
         cuts.sort_by(f64::total_cmp);
         cuts.dedup();
         cuts
@@ -396,8 +406,8 @@ impl<'m> ProvenMotion<'m> {
 
     /// Plan by which the motion goes on from a time.
     fn plan_after(&self, t: f64) -> usize {
-        let begun = self.outputs.partition_point(|output| output.at.time <= t);
-        self.outputs.get(begun.saturating_sub(1)).map_or(0, |output| output.plan)
+        let begun = self.positions.partition_point(|position| position.at.time <= t);
+        self.positions.get(begun.saturating_sub(1)).map_or(0, |position| position.plan)
     }
 
     /// Narrow bounds at a time, by a plan.
@@ -429,18 +439,21 @@ impl<'m> ProvenMotion<'m> {
     /// Position at a time, from the nearest one that is known, in steps that are halved where one is not solved.
     fn solve(&mut self, plan: usize, t: f64) -> Result<AcceptedPosition, TubeFailure> {
         let failed = TubeFailure::NotSolved { time: t };
-        let known = self.instants.values().filter_map(|known| known.as_ref().ok()).map(|known| &known.at);
-        let near = self.outputs.iter().map(|output| &output.at).chain(known).min_by(|a, b| {
+        let instants = self.instants.iter();
+        let known = instants.filter_map(|((plan, _), known)| Some((*plan, &known.as_ref().ok()?.at)));
+        let positions = self.positions.iter().map(|position| (position.plan, &position.at));
+        let near = positions.chain(known).min_by(|(_, a), (_, b)| {
             let away = |at: &AcceptedPosition| (at.time - t).abs();
             away(a).total_cmp(&away(b))
         });
-        let mut from = near.ok_or(failed)?.clone();
+        let (of_plan, mut from) = near.map(|(of_plan, at)| (of_plan, at.clone())).ok_or(failed)?;
+        let mut has_same_rows = of_plan == plan;
         let (mut h, mut halvings) = (t - from.time, 0);
         while from.time != t {
             let to = if h.abs() >= (t - from.time).abs() { t } else { from.time + h };
-            match self.step(plan, &from, to) {
+            match self.step((plan, has_same_rows), &from, to) {
                 // A half of the shortest step leads nowhere.
-                Some(next) if next.time != from.time => from = next,
+                Some(next) if next.time != from.time => (from, has_same_rows) = (next, true),
                 Some(_) => return Err(failed),
                 None if halvings < MOST_STEP_HALVINGS => {
                     (h, halvings) = (0.5 * (to - from.time), halvings + 1)
@@ -451,8 +464,14 @@ impl<'m> ProvenMotion<'m> {
         Ok(from)
     }
 
-    /// Position at a time from another one; `None` if it is not found.
-    fn step(&mut self, plan: usize, from: &AcceptedPosition, t: f64) -> Option<AcceptedPosition> {
+    /// Position at a time from another one, which may be of the same plan; `None` if it is not found, or is that of
+    /// another branch.
+    fn step(
+        &mut self,
+        (plan, has_same_rows): (usize, bool),
+        from: &AcceptedPosition,
+        t: f64,
+    ) -> Option<AcceptedPosition> {
         let (mechanism, h) = (&mut self.mechanism, t - from.time);
         mechanism.saved = from.clone();
         mechanism.topology.clone_from(&self.plans[plan]);
@@ -464,7 +483,13 @@ impl<'m> ProvenMotion<'m> {
             mechanism.state.q[c.0] += (saved.qd[c.0] + 0.5 * h * saved.qdd[c.0]) * h;
         }
         mechanism.state.turn_balls(&mechanism.topology, mechanism.topology.link_ids());
-        mechanism.drive(Path::Laws, t).and_then(|()| mechanism.solve_within(f64::INFINITY)).ok()?;
+        let trusted = trust(expected_move(mechanism, h));
+        mechanism.drive(Path::Laws, t).and_then(|()| mechanism.solve_within(trusted)).ok()?;
+        // sign(det J) is that of the branch; those of other rows cannot be compared.
+        let mut signs = mechanism.state.pivots.iter().zip(&from.pivots).map(|(now, then)| now.1 == then.1);
+        if has_same_rows && !signs.all(|same| same) {
+            return None;
+        }
         mechanism.save(t);
         Some(mechanism.saved.clone())
     }

@@ -104,6 +104,11 @@ pub struct PairClearance {
 }
 
 impl PairClearance {
+    /// First time at which the distance is not known, s: that of the shapes has no number there.
+    pub fn unknown_at(&self) -> Option<f64> {
+        self.curve.iter().find(|at| at.distance[0].is_nan()).map(|at| at.time)
+    }
+
     /// The least of the minima: one where the cores meet, if there is any, since no other is known to be deeper.
     pub fn least(&self) -> Option<&ClearanceMinimum> {
         let by_depth = |a: &ClearanceMinimum, b: &ClearanceMinimum| {
@@ -116,7 +121,7 @@ impl PairClearance {
     /// time.
     pub fn intervals(&self) -> Vec<[f64; 2]> {
         let Some(first) = self.curve.first() else { return Vec::new() };
-        let mut from = (first.distance[0] < 0.0).then_some(first.time);
+        let mut from = (first.distance[0] <= 0.0).then_some(first.time);
         let mut found = Vec::new();
         for contact in &self.contacts {
             if contact.begins {
@@ -521,7 +526,7 @@ impl<'m> Curves<'m> {
             let [from, to] = [samples[k].distance, samples[k + 1].distance];
             // The distance changes by no more than the shapes move.
             let at_least = 0.5 * (from[0] + to[0] - speed * h);
-            if h <= NARROW * span || at_least >= least || from[0] <= 0.0 || to[0] <= 0.0 || is_left_out(k) {
+            if h <= NARROW * span || at_least >= least || !(from[0] > 0.0 && to[0] > 0.0) || is_left_out(k) {
                 continue;
             }
             // Accelerations at both ends of the cubic polynomial through distances and rates there.
@@ -600,6 +605,9 @@ impl<'m> Curves<'m> {
         let Some(last) = samples.len().checked_sub(1) else { return };
         let span = times[last] - times[0];
         let value = |k: usize| samples[k].distance[0];
+        // A distance that is not known has no place in any order: no times are added to look for its minimum.
+        let known = (0..=last).filter(|k| value(*k).is_finite());
+        let Some(lowest) = known.reduce(|a, b| if value(b) < value(a) { b } else { a }) else { return };
         let (low, high) = samples.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), s| {
             (low.min(s.distance[0]), high.max(s.distance[0]))
         });
@@ -632,10 +640,10 @@ impl<'m> Curves<'m> {
             let rate = sense * samples[end].distance[1];
             if rate.is_finite() && rate != 0.0 { rate < 0.0 } else { value(next) < value(end) }
         };
-        if last > 0 && is_lowest(0, !leads_down(0, 1, 1.0)) {
+        if last > 0 && value(0).is_finite() && is_lowest(0, !leads_down(0, 1, 1.0)) {
             event(times[0], EventKind::Minimum(MinimumPlace::Start));
         }
-        if last > 0 && is_lowest(last - 1, !leads_down(last, last - 1, -1.0)) {
+        if last > 0 && value(last).is_finite() && is_lowest(last - 1, !leads_down(last, last - 1, -1.0)) {
             event(times[last], EventKind::Minimum(MinimumPlace::End));
         }
         for plateau in plateaus.iter().filter(|plateau| plateau.is_lowest && plateau.is_inside) {
@@ -716,7 +724,7 @@ impl<'m> Curves<'m> {
                 if has_rates(side) || is_minimum(lowest) {
                     continue;
                 }
-                if value(before) < value(first) || value(after) < value(end) {
+                if !(value(before) >= value(first) && value(after) >= value(end)) {
                     continue;
                 }
                 // Searches for the deepest point leave small dips.
@@ -751,7 +759,7 @@ impl<'m> Curves<'m> {
         // Contacts: from a time at which the sign changes, Newton's method or the polynomial.
         for k in 0..last {
             let [a, b] = [value(k), value(k + 1)];
-            if (a > 0.0) == (b > 0.0) {
+            if (a > 0.0) == (b > 0.0) || a.is_nan() || b.is_nan() {
                 continue;
             }
             let begins = b <= 0.0;
@@ -785,7 +793,6 @@ impl<'m> Curves<'m> {
             }
         }
         // A distance may jump to its least value, which then is that of a solved time.
-        let lowest = (0..=last).reduce(|a, b| if value(b) < value(a) { b } else { a }).unwrap_or_default();
         let found = events.iter().chain(located.events.iter().filter(|event| event.pair == p));
         let minima = found.filter(|event| matches!(event.kind, EventKind::Minimum(_)));
         let at_minimum = |event: &Event| index_of(times, event.time).map_or(f64::INFINITY, value);
@@ -893,4 +900,33 @@ enum EventKind {
     Minimum(MinimumPlace),
     /// True if the shapes touch from there on.
     Contact(bool),
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_times_are_added_where_the_distance_is_not_known() {
+        let pairs = [[ShapeId(0), ShapeId(1)]];
+        let at = |k: usize| {
+            let x = (k as f64 - 7.0) / 10.0;
+            let distance = if (2..5).contains(&k) { [f64::NAN; 3] } else { [1.0 + x * x, 2.0 * x, 2.0] };
+            let points = [Vec3::ZERO; 2];
+            ShapeDistance { time: k as f64 / 10.0, distance, points, is_parallel: false, cores_meet: false }
+        };
+        let samples: Vec<ShapeDistance> = (0..11).map(at).collect();
+        let curves = Curves {
+            pairs: &pairs,
+            size: 1.0,
+            at_rest: false,
+            times: samples.iter().map(|at| at.time).collect(),
+            reaches: vec![vec![None; samples.len()]],
+            samples: vec![samples],
+        };
+        let located = curves.locate(&curves.plateaus(), &curves.overlaps());
+        assert_eq!(located.add, Vec::<f64>::new());
+        let minima: Vec<f64> = located.events.iter().map(|event| event.time).collect();
+        assert_eq!(minima, [0.7]);
+    }
 }

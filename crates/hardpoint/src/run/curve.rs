@@ -324,9 +324,10 @@ impl<T: Real> SampledCurve<'_, T> {
     /// limit.
     pub(super) fn slope_over(&self, abscissa: &Self, k: usize, t: f64) -> T {
         if self.orders == 1
-            && let Some([y, x]) = self.difference(t).zip(abscissa.difference(t)).map(<[T; 2]>::from)
+            && let Some((y, x)) = self.difference(t).zip(abscissa.difference(t))
         {
-            return y / x;
+            // The derivatives may be known at the ends of interval k alone.
+            return T::constant(y / x);
         }
         let [y, x] = [self.series(k, t), abscissa.series(k, t)];
         // l'Hopital: the ratio of the first coefficients that are not round-off.
@@ -338,22 +339,21 @@ impl<T: Real> SampledCurve<'_, T> {
         }
     }
 
-    /// Rate at a time by the parabola through the three nearest solved times; `None` with fewer times, or next to a jump
+    /// Rate at a time by the parabola through the three nearest solved times; `None` with fewer times, or beside a jump
     /// (a pair of times).
-    fn difference(&self, t: f64) -> Option<T> {
+    fn difference(&self, t: f64) -> Option<f64> {
         let times = &self.times[..self.values.len()];
         let apart = |k: &usize| (times[*k] - t).abs();
         let middle = (1..times.len().checked_sub(1)?).min_by(|a, b| apart(a).total_cmp(&apart(b)))?;
         let [t0, t1, t2] = [middle - 1, middle, middle + 1].map(|k| times[k]);
-        let [y0, y1, y2] = [middle - 1, middle, middle + 1].map(|k| self.values[k][0]);
+        let [y0, y1, y2] = [middle - 1, middle, middle + 1].map(|k| self.values[k][0].value());
         let [h0, h1] = [t1 - t0, t2 - t1];
         if h0.min(h1) < JUMP * h0.max(h1) {
             return None;
         }
-        let c = T::constant;
         // Newton's form: y01 + y012 ((t - t0) + (t - t1))
-        let [y01, y12] = [(y1 - y0) / c(h0), (y2 - y1) / c(h1)];
-        Some(y01 + (y12 - y01) / c(t2 - t0) * c(t - t0 + t - t1))
+        let [y01, y12] = [(y1 - y0) / h0, (y2 - y1) / h1];
+        Some(y01 + (y12 - y01) / (t2 - t0) * (t - t0 + t - t1))
     }
 
     /// Slope where the abscissa rests with its acceleration, so that derivatives would be needed that are not solved:

@@ -214,7 +214,7 @@ pub(crate) fn unresolved_times(solution: &Solution, metric: &Metric, finer: bool
 }
 
 /// Distance of the times beside one at which a slope over a measure without rates is taken, as a fraction of the run:
-/// a central difference loses as many digits by round-off as by its curvature.
+/// the errors of a central difference by round-off and by its curvature are alike.
 const BESIDE: f64 = 1e-4;
 
 /// Times beside one at which a metric is taken over a measure, if there are no rates: at an equilibrium. The derivative

@@ -1,9 +1,9 @@
 //! Proven bounds of the motion of a design, and of its clearances between the output times.
 //!
-//! The motion is divided at its output times, and where rates of laws jump. A part passes if a proven lower bound of
-//! the distance over it is not below the claim (`clearance/separation.rs`), else it is halved. The bounds have no slack
-//! where the distance falls, rises or is convex over a part: the least distance itself can be proved, but for
-//! round-off.
+//! The motion is divided at its output times, where rates of laws jump, and where other rows are selected. A part
+//! passes if a proven lower bound of the distance over it is not below the claim (`clearance/separation.rs`), else it
+//! is halved. The bounds have no slack where the distance falls, rises or is convex over a part: the least distance
+//! itself can be proved, but for round-off.
 
 use std::collections::HashMap;
 use std::rc::Rc;
@@ -14,7 +14,7 @@ use crate::law::TimeJet;
 use crate::model::{Model, ShapeId, ShapeKind};
 use crate::motion::parts::PlanGeometry;
 use crate::motion::stepper::Stepper;
-use crate::motion::tube::{Instant, OutputPosition, Slab};
+use crate::motion::tube::{Instant, Slab, SolvedPosition};
 use crate::motion::{ProvenMotion, Stop, TubeFailure, advance};
 use crate::number::{Interval, Jet, Rates};
 use crate::space::{Mat3, Pose, Real, Vec3};
@@ -49,13 +49,15 @@ impl Analysis<'_> {
         let PreparedDesign { geometry, laws, .. } = prepared;
         let parts = PlanGeometry::same(model, self.topology(), &geometry, &laws);
         let mut one = Stepper::new(model, self.topology(), parts);
-        let (mut outputs, mut plans, mut selections) = (Vec::new(), Vec::new(), None);
+        let (mut positions, mut plans, mut selections) = (Vec::new(), Vec::new(), None);
         let mut stop = None;
         // A motion that ends at the limit of a joint is proved up to there.
         let last_time = at_limit.as_ref().map_or(Some(f64::INFINITY), |stop| stop.last_time);
         let is_before = |t: &f64| last_time.is_some_and(|last| *t < last);
         let of_limit = last_time.filter(|last| last.is_finite());
-        let times: Vec<f64> = model.times.iter().copied().take_while(is_before).chain(of_limit).collect();
+        // Between output times, too: every position of the motion is near one of these.
+        let within = self.times_within().into_iter();
+        let times: Vec<f64> = within.take_while(is_before).chain(of_limit).collect();
         for (k, &t) in times.iter().enumerate() {
             let moved = if k == 0 { advance::start(&mut one, t) } else { advance::advance(&mut one, t) };
             if let Err(reason) = moved {
@@ -70,12 +72,15 @@ impl Analysis<'_> {
                 selections = Some(one.mechanism.selections);
                 plans.push(one.mechanism.topology.clone());
             }
-            outputs.push(OutputPosition { at: one.mechanism.saved.clone(), plan: plans.len() - 1 });
+            let is_of_model = model.times.binary_search_by(|time| time.total_cmp(&t)).is_ok();
+            let is_output = stop.is_some() || k + 1 == times.len() || is_of_model;
+            let at = one.mechanism.saved.clone();
+            positions.push(SolvedPosition { at, plan: plans.len() - 1, is_output });
             if stop.is_some() {
                 break;
             }
         }
-        Some((ProvenMotion::new(one.mechanism, outputs, plans), stop.or(at_limit)))
+        Some((ProvenMotion::new(one.mechanism, positions, plans), stop.or(at_limit)))
     }
 }
 
@@ -126,9 +131,10 @@ pub enum ProofFailure {
         distance: f64,
     },
     /// No bound reaches the claim, in however short a part: the claim is the least distance itself up to round-off, or
-    /// the rates of a law jump where the distance is least, the distance is the least over a part of the motion, or the
-    /// shapes are in each other.
+    /// the rates of a law jump where the distance is least, or the distance is the least over a part of the motion.
     Unresolved,
+    /// The cores of the shapes meet, where the distance does not say how deep the shapes are in each other.
+    CoresMeet,
     /// A ring is nearest from the inside, where only points have a bound.
     WithinRing,
     /// A shape is a mesh, which has no bounds by separation.
@@ -173,6 +179,8 @@ struct Place {
     direction: Option<[Vec3; 3]>,
     /// Distance of the cores, for plain numbers.
     distance: f64,
+    /// True if the cores are segments that cross, and the distance is the way out of each other within their plane.
+    cross: bool,
     of_features: Option<Direction>,
 }
 
@@ -270,7 +278,10 @@ impl<'a> ClearanceProver<'a> {
                 && to - from > SHORTEST * (end - start)
                 && bounds + parts.len() + 2 <= most;
             let may_pass = match failed.1 {
-                ProofFailure::Nearer { .. } | ProofFailure::WithinRing | ProofFailure::Mesh { .. } => false,
+                ProofFailure::Nearer { .. }
+                | ProofFailure::CoresMeet
+                | ProofFailure::WithinRing
+                | ProofFailure::Mesh { .. } => false,
                 ProofFailure::Unresolved => true,
                 ProofFailure::Motion(reason) => reason.may_be_halved(),
             };
@@ -278,7 +289,13 @@ impl<'a> ClearanceProver<'a> {
                 let (bound, reason) = failed;
                 let within =
                     bound == f64::NEG_INFINITY && reason == ProofFailure::Unresolved && pair.has_ring();
-                let reason = if within { ProofFailure::WithinRing } else { reason };
+                // Cores that do not meet are proved to be apart in a part that is short enough.
+                let meet = reason == ProofFailure::Unresolved && pair.claim <= 0.0 && !pair.has_plane();
+                let reason = match (within, meet) {
+                    (true, _) => ProofFailure::WithinRing,
+                    (false, true) => ProofFailure::CoresMeet,
+                    (false, false) => reason,
+                };
                 let bound = (Interval::constant(bound) - pair.rounds()).low;
                 return ClearanceProof::NotProved { from, to, bound, reason };
             }
@@ -340,6 +357,7 @@ impl PairProof<'_, '_> {
             solids,
             direction: placed.direction(self.shapes, &near).map(rates),
             distance: near.distance,
+            cross: near.is_way_out_in_plane(),
         });
         self.places.insert(Rc::as_ptr(instant), place.clone());
         place
@@ -351,6 +369,12 @@ impl PairProof<'_, '_> {
         let places = slab.instants.each_ref().map(|instant| self.place(instant));
         for place in &places {
             if place.distance < self.claim - BELOW * self.prover.size {
+                // Cores that only pass through each other have no depth: there is no way out within a plane that they
+                // leave.
+                let is_passing = place.cross && !places.iter().all(|place| place.cross);
+                if is_passing && self.claim <= 0.0 {
+                    return Err(ProofFailure::CoresMeet);
+                }
                 let distance = place.distance - self.rounds().middle();
                 return Err(ProofFailure::Nearer { time: place.instant.time(), distance });
             }

@@ -8,7 +8,7 @@ use crate::model::{BodyId, ShapeId};
 use crate::motion::{BodyState, Motion};
 use crate::space::{Pose, Vec3};
 
-use super::Analysis;
+use super::{Analysis, Run, Solution};
 
 /// A shape at poses of motions, in the frame of a body.
 #[derive(Clone, Debug)]
@@ -120,5 +120,19 @@ impl Analysis<'_> {
     /// shape is taken first.
     pub fn swept_times(&self) -> Vec<f64> {
         self.times_within()
+    }
+
+    /// Motion of a design that ends between two output times, solved to its end: the last of its times is where a limit
+    /// stops it, or that of the last position that is reached. `None` if `solution` is that motion already.
+    pub fn motion_to_end(&self, design: &[f64], solution: &Solution) -> Option<Motion> {
+        let end = solution.stop.as_ref()?.last_time?;
+        let solved = &solution.motion.times;
+        if *solved.last()? >= end {
+            return None;
+        }
+        let times = solved.iter().copied().chain([end]).collect();
+        let run = Run::new().at(design).without_measures().without_sensitivities();
+        let Solution { motion, .. } = self.without_metrics(times).solve(run);
+        (motion.times.last() == Some(&end)).then_some(motion)
     }
 }
