@@ -1,6 +1,6 @@
 //! Requests of a page, and their replies.
 
-use hardpoint_file::Diagnostic;
+use hardpoint_file::{Diagnostic, Severity};
 use hardpoint_report::page::{Design, ModelText, Table};
 use serde::{Deserialize, Serialize};
 
@@ -261,7 +261,12 @@ impl DiagnosticMessage {
             _ => d.message.clone(),
         };
         Self {
-            severity: format!("{:?}", d.severity).to_lowercase(),
+            severity: match d.severity {
+                Severity::Error => "error",
+                Severity::Warning => "warning",
+                Severity::Note => "note",
+            }
+            .to_owned(),
             code: d.code.into(),
             message,
             file: Some(d.file.clone()).filter(|_| !is_here),
