@@ -26,7 +26,7 @@ const MOVE_PER_TRAVEL: f64 = 8.0;
 /// otherwise, and takes a position instead of a stiffness.
 const MOST_PARTS: usize = 16;
 /// Largest number of parts in which angles are counted: a motion may not have more radians between two output times.
-const MOST_COUNTED_PARTS: f64 = 1e5;
+const MOST_COUNTED_PARTS: usize = 100_000;
 
 /// Solves the design configuration, in which all drivers are zero.
 ///
@@ -116,8 +116,8 @@ impl<'v> WayAtRest<'v> {
         let from: Vec<f64> = from.map(|[value, ..]| *value).collect();
         let travel = |((from, to), unit): ((&f64, &f64), &f64)| (to - from).abs() / unit;
         let travel = from.iter().zip(to).zip(&one.mechanism.driver_units).map(travel).fold(0.0, f64::max);
-        let counted = (travel / TURN_TRUST).ceil().min(MOST_COUNTED_PARTS).max(1.0);
-        let least_parts = if one.turns.is_some() { counted as usize } else { 1 };
+        let counted = ((travel / TURN_TRUST).ceil() as usize).clamp(1, MOST_COUNTED_PARTS);
+        let least_parts = if one.turns.is_some() { counted } else { 1 };
         Self { from, to, travel, least_parts }
     }
 
