@@ -101,6 +101,7 @@ impl<'m> DesignMap<'m> {
     /// Index of the first formula that has no finite value for these values of the variables; laws are evaluated over
     /// time.
     pub fn undefined_formula(&self, values: &[f64]) -> Option<usize> {
+        self.formulas.as_ref()?;
         let design = PlacedDesign::new(self, values.to_vec());
         let is_law = |k: usize| matches!(self.model().formulas[k].of, Target::Law(..));
         let results = [&design.values.formulas, &design.for_lengths.formulas];

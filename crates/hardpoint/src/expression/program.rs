@@ -123,9 +123,20 @@ impl Program {
     /// True if the result is a magnitude: a root of a sum of squares, or an absolute value.
     pub(crate) fn is_magnitude(&self) -> bool {
         match self.operations.last() {
-            Some(Operation::Two(Binary::Hypot) | Operation::One(Function::Abs | Function::Sqrt)) => true,
+            Some(Operation::Two(function)) => matches!(function, Binary::Hypot),
+            Some(Operation::One(function)) => matches!(function, Function::Abs | Function::Sqrt),
             Some(Operation::Powf(exponent)) => *exponent == 0.5,
-            _ => false,
+            Some(
+                Operation::Constant(_)
+                | Operation::Parameter(_)
+                | Operation::Time
+                | Operation::Neg
+                | Operation::Powi(_)
+                | Operation::Step
+                | Operation::Select(_)
+                | Operation::Settle,
+            )
+            | None => false,
         }
     }
 

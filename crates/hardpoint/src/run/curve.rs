@@ -131,16 +131,14 @@ impl<T: Real> SampledCurve<'_, T> {
     }
 
     /// Number of these that are known.
-    fn known_of(&self, numbers: &[T; 3]) -> usize {
+    fn known_of<U: Real>(&self, numbers: &[U; 3]) -> usize {
         numbers[..self.orders].iter().take_while(|x| x.value().is_finite()).count()
     }
 
     /// Numbers of orders at both ends of an interval that are known, without accelerations that the interval does not
     /// resolve: near a kink they are greater than all rates by far.
     fn resolved<U: Real>(&self, ends: &[[U; 3]; 2], h: f64) -> [usize; 2] {
-        let known = ends
-            .each_ref()
-            .map(|end| end[..self.orders].iter().take_while(|x| x.value().is_finite()).count());
+        let known = ends.each_ref().map(|end| self.known_of(end));
         if known != [3, 3] {
             return known;
         }
