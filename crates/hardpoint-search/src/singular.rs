@@ -1,6 +1,6 @@
 //! Singular values by one-sided Jacobi rotations: small ones have the same relative accuracy as large ones.
 
-use crate::vector::{dot, norm};
+use crate::vector::norm;
 
 /// Columns count as perpendicular if their cosine is below this.
 const PERPENDICULAR: f64 = 1e-15;
@@ -26,11 +26,7 @@ pub fn singular(rows: &[Vec<f64>], n: usize) -> Singular {
         for p in 0..n {
             for q in p + 1..n {
                 // A rotation of columns p and q that makes them perpendicular
-                let [a, b, c] = [
-                    dot(&columns[p], &columns[p]),
-                    dot(&columns[q], &columns[q]),
-                    dot(&columns[p], &columns[q]),
-                ];
+                let [a, b, c] = products(&columns[p], &columns[q]);
                 if c.abs() <= PERPENDICULAR * (a * b).sqrt() {
                     continue;
                 }
@@ -55,11 +51,26 @@ pub fn singular(rows: &[Vec<f64>], n: usize) -> Singular {
     }
 }
 
+/// Squares and dot product of two columns, in one pass.
+fn products(a: &[f64], b: &[f64]) -> [f64; 3] {
+    let n = a.len();
+    let (a, b) = (&a[..n], &b[..n]);
+    let mut sums = [0.0; 3];
+    for k in 0..n {
+        sums[0] += a[k] * a[k];
+        sums[1] += b[k] * b[k];
+        sums[2] += a[k] * b[k];
+    }
+    sums
+}
+
+/// Rotates columns p and q > p.
 fn rotate(columns: &mut [Vec<f64>], [p, q]: [usize; 2], cos: f64, sin: f64) {
-    for k in 0..columns[p].len() {
-        let (a, b) = (columns[p][k], columns[q][k]);
-        columns[p][k] = cos * a - sin * b;
-        columns[q][k] = sin * a + cos * b;
+    let (before, after) = columns.split_at_mut(q);
+    let n = after[0].len();
+    let (a, b) = (&mut before[p][..n], &mut after[0][..n]);
+    for k in 0..n {
+        (a[k], b[k]) = (cos * a[k] - sin * b[k], sin * a[k] + cos * b[k]);
     }
 }
 

@@ -291,11 +291,11 @@ fn large_files_take_no_more_work_than_they_must() {
         ("optimize.limits", "{ hardpoint = \"A\", x = [2, 1], z = { max = 1 } }"),
     ] {
         grows_in_proportion(|n| many(table, entry, n));
-        survives(&many(table, entry, 50_000));
+        survives(&many(table, entry, 20_000));
     }
     let law = |of: &str| survives(&format!("{header}[drivers]\nd = {{ joint = \"J\", law = {{ {of} }} }}\n"));
     let many_of = |one: &str, n: usize| vec![one; n].join(", ");
-    for n in [500, 4000, 50_000] {
+    for n in [500, 20_000] {
         survives(&many("couplers", "{ type = \"gear\", joints = [\"a\", \"b\"], teeth = [1, 2] }", n));
         survives(&many(
             "drivers",

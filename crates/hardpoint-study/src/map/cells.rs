@@ -9,8 +9,8 @@ use std::rc::Rc;
 
 use hardpoint::model::{DriverId, Model};
 use hardpoint::motion::BoxFailure;
-use hardpoint::number::{Exponents, Interval, Real};
-use hardpoint::run::{Analysis, BoundsOfOutputs, DriverMap, OutputBounds};
+use hardpoint::number::{Exponents, Interval, Real, Taylor};
+use hardpoint::run::{Analysis, BoundsOfOutputs, DriverMap};
 use hardpoint::topology::Formulation;
 
 use super::{MOST_VALUES, MapColumn, MapError, MapTable, ProofError, Request};
@@ -106,7 +106,7 @@ pub fn solve(
 }
 
 struct Search<'a> {
-    map: Box<dyn DriverMap + 'a>,
+    map: DriverMap<'a>,
     request: &'a Request,
     /// Orders of the numbers at a knot.
     orders: Vec<Exponents>,
@@ -280,10 +280,10 @@ impl Search<'_> {
     }
 
     fn magnitudes_of(&self, bounds: &BoundsOfOutputs) -> Vec<Vec<f64>> {
-        let of = |output: &dyn OutputBounds| {
+        let of = |output: &Taylor<Interval>| {
             self.asked.iter().map(|order| output.derivative(*order).magnitude()).collect()
         };
-        bounds.iter().map(|output| of(&**output)).collect()
+        bounds.iter().map(of).collect()
     }
 
     /// Magnitudes over a part that is halved this often, and where there are no bounds over a box.

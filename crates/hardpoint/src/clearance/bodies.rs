@@ -2,7 +2,7 @@
 
 use crate::model::{BodyId, Model};
 use crate::motion::{BodyState, States};
-use crate::number::{Dual, Rates};
+use crate::number::{self, Dual, Rates};
 use crate::sensitivity::{BodySensitivity, Derivatives};
 use crate::space::{Pose, Real, Vec3};
 
@@ -152,7 +152,7 @@ pub(super) struct MovingSegment {
 impl MovingSegment {
     /// Velocities of its ends.
     fn velocities(&self) -> [Vec3; 2] {
-        [0, 1].map(|k| {
+        number::both([0, 1], |k| {
             let body = &self.carriers[k];
             body.v + body.omega.cross(self.ends[k] - body.r)
         })
@@ -162,23 +162,23 @@ impl MovingSegment {
 /// True if two segments that cross at a point leave their plane: there the lines move apart along its normal, or a body
 /// that carries one of them turns out of it.
 pub(super) fn leave_their_plane(segments: [&MovingSegment; 2], at: Vec3) -> bool {
-    let [e, f] = segments.map(|s| s.ends[1] - s.ends[0]);
+    let [e, f] = number::both(segments, |s| s.ends[1] - s.ends[0]);
     let Some(normal) = e.cross(f).unit() else { return false };
     let velocities = segments.map(MovingSegment::velocities);
     // Velocities of the lines' own points at the crossing, and the ends' velocities relative to each other.
-    let crossing = [0, 1].map(|k| {
+    let crossing = number::both([0, 1], |k| {
         let (from, along) = (segments[k].ends[0], [e, f][k]);
         let [v, w] = velocities[k];
         v + (w - v) * (along.dot(at - from) / along.dot(along))
     });
     let greatest = |all: &mut dyn Iterator<Item = Vec3>| all.map(|v| v.norm()).fold(0.0, f64::max);
     let fastest = greatest(&mut velocities.into_iter().flatten());
-    let relative = greatest(&mut velocities[0].iter().flat_map(|v| velocities[1].map(|w| w - *v)));
+    let relative = greatest(&mut velocities[0].iter().flat_map(|v| number::both(velocities[1], |w| w - *v)));
     if (crossing[1] - crossing[0]).dot(normal).abs() > OUT_OF_PLANE * relative + AT_REST * fastest {
         return true;
     }
     // The plane of both lines turns with w: n . (w x e) is the rate at which the first one rises, and alike the second.
-    let rises = velocities.map(|[v, w]| normal.dot(w - v));
+    let rises = number::both(velocities, |[v, w]| normal.dot(w - v));
     let turn = (f * rises[0] - e * rises[1]) * (1.0 / f.dot(e.cross(normal)));
     let size = e.norm().max(f.norm());
     segments.into_iter().filter(|s| s.is_rigid).any(|s| {

@@ -12,6 +12,7 @@
 //! | circle of axis e about c, face | `n . (c - a) - R sqrt(1 - (n . e)^2)` |
 //! | line or circle, circle | least over both parameters, by Newton's method |
 
+use crate::number;
 use crate::space::{Real, Vec3};
 
 use super::circle::Circle;
@@ -220,13 +221,13 @@ fn stationary<T: Real>(p: &Curve<T>, q: &Curve<T>) -> [Vec3<T>; 2] {
     let mut inverse = inverse_curvature(&a, &b, plain);
     for _ in 0..PLAIN_STEPS {
         let step = correction(&a, &b, plain, inverse);
-        plain = [0, 1].map(|k| plain[k] - step[k]);
+        plain = number::both([0, 1], |k| plain[k] - step[k]);
         inverse = inverse_curvature(&a, &b, plain);
     }
     let mut at = plain.map(T::constant);
     for _ in 0..CORRECTIONS {
         let step = correction(p, q, at, inverse);
-        at = [0, 1].map(|k| at[k] - step[k]);
+        at = number::both([0, 1], |k| at[k] - step[k]);
     }
     [p.at(at[0])[0], q.at(at[1])[0]]
 }

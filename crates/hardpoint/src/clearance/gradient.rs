@@ -22,7 +22,7 @@
 use crate::design::BodyFixed;
 use crate::model::{BodyId, Model, PointId, ShapeId, ShapeKind};
 use crate::motion::{BodyState, States};
-use crate::number::{Dual, Rates};
+use crate::number::{self, Dual, Rates};
 use crate::sensitivity::{BodySensitivity, Derivatives};
 use crate::space::{Real, Vec3};
 
@@ -93,7 +93,7 @@ impl EndLoad {
 
 /// Value, rate and acceleration of a vector.
 fn rates(x: Vec3<Rates>) -> [Vec3; 3] {
-    [0, 1, 2].map(|n| x.map(|c| c.0[n]))
+    number::each(&[0, 1, 2], |n| x.map(|c| c.0[n]))
 }
 
 impl DistanceGradient {
@@ -108,7 +108,8 @@ impl DistanceGradient {
             return None;
         }
         let features = placed.features(shapes, near);
-        let (points, n) = nearest_points(features.each_ref().map(|(placed, _)| placed), near.points)?;
+        let (points, n) =
+            nearest_points(number::both(features.each_ref(), |(placed, _)| placed), near.points)?;
         let n = n * Rates::constant(near.sign);
         if near.sign == 0.0 || !rates(n)[0].is_finite() {
             return None;
@@ -124,7 +125,7 @@ impl DistanceGradient {
     /// Derivatives of distance, rate and acceleration by a variable. `fixed` has the derivatives of body-fixed data,
     /// which must move the shapes by their points only ([`moves_points_only`]).
     pub fn by(&self, states: States<'_>, d: Derivatives<'_>, fixed: &BodyFixed<Dual<Rates>>) -> [f64; 3] {
-        let [a, b] = self.shapes.map(|s| fixed.shapes[s.0].round.d.0[0]);
+        let [a, b] = number::both(self.shapes, |s| fixed.shapes[s.0].round.d.0[0]);
         let mut sum = [-(a + b), 0.0, 0.0];
         for load in self.loads.iter().flatten() {
             let by = load.by_body(&d.body(load.body.0));
@@ -152,7 +153,7 @@ fn loads_of(
     let one = |body: BodyId, point| Some([Some(EndLoad::of((body, &state(body)), point, at, force)), None]);
     match &model.shapes[shape.0].kind {
         ShapeKind::Capsule { ends } => {
-            let [a, b] = ends.map(|p| placed.point(p));
+            let [a, b] = number::both(*ends, |p| placed.point(p));
             let along = b - a;
             let part = along.dot(at - a) / along.dot(along);
             // Each end has the part of the force that the lever leaves to it.

@@ -6,6 +6,7 @@
 
 use std::f64::consts::TAU;
 
+use crate::number;
 use crate::space::Vec3;
 
 use super::circle::Circle;
@@ -179,16 +180,16 @@ pub(super) fn least_along<S: Surroundings>(path: &Path, around: &S) -> f64 {
         half *= 0.5;
         places += 2 * open.len();
         let turn = turn(half);
-        let halves = |o: &Open| [-half, half].map(|by| open_at(o.middle + by, half, turn));
+        let halves = |o: &Open| number::both([-half, half], |by| open_at(o.middle + by, half, turn));
         open = open.iter().flat_map(halves).collect();
         best = lowest(best, &open);
     }
     // The values are those of a minimum to their resolution; the place is, where the slope changes its sign.
     let slope = |t: f64| around.distance(path.at(t)).1.dot(path.tangent(t));
     let value = |t: f64| around.distance(path.at(t)).0;
-    let beside = [-AROUND, AROUND].map(|by| best[1] + by * half);
+    let beside = number::both([-AROUND, AROUND], |by| best[1] + by * half);
     let t = match path {
-        Path::Segment(_) => least_of_convex(slope, beside.map(|t| t.clamp(0.0, 1.0))),
+        Path::Segment(_) => least_of_convex(slope, number::both(beside, |t| t.clamp(0.0, 1.0))),
         Path::Circle { .. } => least_of_convex(slope, beside),
     };
     if value(t) <= best[0] + within(best[0]) { t } else { best[1] }
@@ -275,7 +276,7 @@ pub(super) fn least_of_segment([a, b]: [Vec3; 2], circle: &Circle) -> f64 {
         &[[f64::NEG_INFINITY, t1 - w, -1.0], [t1 + w, f64::INFINITY, 1.0]]
     };
     let places = sides.iter().map(|[from, to, side]| {
-        let t = least_of_convex(|t| slope(t, *side), [from, to].map(|t| t.clamp(0.0, 1.0)));
+        let t = least_of_convex(|t| slope(t, *side), number::both([from, to], |t| t.clamp(0.0, 1.0)));
         [t, distance(t)]
     });
     places.reduce(|a, b| if b[1] < a[1] { b } else { a }).map_or(0.0, |[t, _]| t)

@@ -1,5 +1,6 @@
 //! Nearest points of two cores, for plain numbers, and the features that hold them.
 
+use crate::number;
 use crate::space::{Real, Vec3};
 
 use super::circle::Circle;
@@ -345,7 +346,7 @@ impl Drum {
 
     /// Ends of the axis, on the caps.
     pub fn axis(&self) -> [Vec3; 2] {
-        [-1.0, 1.0].map(|side| self.middle.moved(self.half_width * side).centre)
+        number::both([-1.0, 1.0], |side| self.middle.moved(self.half_width * side).centre)
     }
 
     /// Distance of a point, negative inside: a convex function of the point.
@@ -387,7 +388,7 @@ impl Drum {
         let (height, rho, _) = self.cylindrical(a);
         // Within the cylinder, a point near a cap is less deep.
         let reach = self.half_width + (rho - self.middle.radius).min(0.0);
-        let [u, v] = [-reach, reach].map(|z| (z - height) / self.middle.axis.dot(e));
+        let [u, v] = number::both([-reach, reach], |z| (z - height) / self.middle.axis.dot(e));
         let (from, to) = (u.min(v).max(0.0), u.max(v).min(1.0));
         Some(if reach > 0.0 && from < to { 0.5 * (from + to) } else { t })
     }
@@ -530,7 +531,7 @@ fn cylinders(drums: [&Drum; 2]) -> Nearest {
     let rims = |of: usize| {
         let other = drums[1 - of];
         let core = Core::Cylinder { middle: other.middle, half_width: other.half_width };
-        [-1.0, 1.0].map(|side| {
+        number::both([-1.0, 1.0], |side| {
             let rim = drums[of].middle.moved(drums[of].half_width * side);
             along_circle(&rim, Feature::Circle(side), &AroundConvex(&core), |p| from_point(p, &core))
         })

@@ -2,6 +2,7 @@
 
 use crate::design::{BodyFixed, ShapeGeometry};
 use crate::model::{BodyId, ClearanceId, Model, PointId, ShapeId, ShapeKind, with_core};
+use crate::number;
 use crate::space::{Pose, Real, Vec3};
 
 use super::bodies::{Bodies, MovingSegment, leave_their_plane};
@@ -48,7 +49,7 @@ impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
 
     /// Radii around the cores of two shapes.
     pub fn rounds(&self, shapes: [ShapeId; 2]) -> T {
-        let [a, b] = shapes.map(|s| self.fixed.shapes[s.0].round);
+        let [a, b] = number::both(shapes, |s| self.fixed.shapes[s.0].round);
         a + b
     }
 
@@ -70,7 +71,7 @@ impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
                 Placed::Point((vertex(b) - from).times_plus(T::constant(at), from))
             }
             Feature::Facet(corners) => {
-                let [a, b, c] = corners.map(vertex);
+                let [a, b, c] = number::each(&corners, vertex);
                 let normal = (b - a).cross(c - a);
                 let is_behind = normal.value().dot(seen_from - a.value()) < 0.0;
                 let sense = if is_behind && !self.has_inside(shape) { -1.0 } else { 1.0 };
@@ -122,14 +123,14 @@ impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
 
     /// The nearest points of the cores of two shapes, with the distance of the cores.
     pub fn nearest_of_cores(&self, shapes: [ShapeId; 2]) -> Nearest {
-        let kinds = shapes.map(|s| &self.model.shapes[s.0].kind);
-        let cores = shapes.map(|s| self.plain_core(s));
-        let corners = kinds.map(|kind| match kind {
+        let kinds = number::both(shapes, |s| &self.model.shapes[s.0].kind);
+        let cores = number::both(shapes, |s| self.plain_core(s));
+        let corners = number::both(kinds, |kind| match kind {
             ShapeKind::Hull { points, .. } => self.points(points),
             ShapeKind::Mesh { .. } | with_core!() => Vec::new(),
         });
         // Surfaces in the frame in which their points are known, and that frame.
-        let views = [0, 1].map(|k| match kinds[k] {
+        let views = number::both([0, 1], |k| match kinds[k] {
             ShapeKind::Mesh { body, surface } => Some((View::Mesh(surface), self.bodies.pose(*body))),
             ShapeKind::Hull { facets, .. } => {
                 Some((View::Hull { points: &corners[k], facets }, Pose::IDENTITY))
@@ -154,7 +155,7 @@ impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
             }
             _ => unreachable!("a shape has a core or is a surface"),
         };
-        let near = Nearest { points: near.points.map(|p| frame.point(p)), ..near };
+        let near = Nearest { points: number::both(near.points, |p| frame.point(p)), ..near };
         let plain = |k: usize| {
             let (placed, less) = self.feature(shapes[k], near.features[k], near.points[1 - k]);
             (placed.value(), less.value())
@@ -190,17 +191,23 @@ impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
     /// A number whose derivatives are zero where the cores of two shapes have the same place and form relative to each
     /// other, and undefined where they do not.
     fn changes(&self, shapes: [ShapeId; 2]) -> T {
-        let [first, second] = shapes.map(|shape| self.markers(shape));
-        let apart = second.iter().flat_map(|q| first.iter().map(|p| *q - *p));
-        let places = apart.flat_map(|v| [v.x, v.y, v.z]);
-        let sizes = shapes.into_iter().flat_map(|s| {
+        let [first, second] = number::both(shapes, |shape| self.markers(shape));
+        let mut sum = T::zero();
+        for q in &second {
+            for p in &first {
+                let Vec3 { x, y, z } = *q - *p;
+                sum += x.without_derivatives() + y.without_derivatives() + z.without_derivatives();
+            }
+        }
+        for s in shapes {
             let ShapeGeometry { size, round, .. } = self.fixed.shapes[s.0];
+            sum += size.without_derivatives();
             // Only cores of cylinders depend on the radius around them.
-            let is_drum =
-                matches!(self.model.shapes[s.0].kind, ShapeKind::Cylinder { .. } | ShapeKind::Tyre { .. });
-            [size, if is_drum { round } else { size }]
-        });
-        places.chain(sizes).fold(T::zero(), |sum, x| sum + x.without_derivatives())
+            if matches!(self.model.shapes[s.0].kind, ShapeKind::Cylinder { .. } | ShapeKind::Tyre { .. }) {
+                sum += round.without_derivatives();
+            }
+        }
+        sum
     }
 
     /// Points that determine the place of a core, and its form but for its radius.
@@ -214,12 +221,12 @@ impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
             }
             ShapeKind::Tyre { wheel, .. } => vec![self.point(self.model.wheels[wheel.0].centre)],
             ShapeKind::Capsule { ends } | ShapeKind::Cylinder { ends, .. } => {
-                ends.map(|p| self.point(p)).to_vec()
+                number::both(*ends, |p| self.point(p)).to_vec()
             }
             ShapeKind::Hull { points, .. } => points.iter().map(|p| self.point(*p)).collect(),
             ShapeKind::Mesh { body, .. } => {
                 let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-                corners.map(Vec3::from).map(|s| self.bodies.point(*body, s.spread())).to_vec()
+                number::each(&corners.map(Vec3::from), |s| self.bodies.point(*body, s.spread())).to_vec()
             }
         };
         let axis = self.model.shapes[shape.0].axis(self.model).zip(self.fixed.shapes[shape.0].axis);
@@ -236,13 +243,13 @@ impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
             return None;
         }
         let features = self.features(shapes, near);
-        let (_, n) = nearest_points(features.each_ref().map(|(placed, _)| placed), near.points)?;
+        let (_, n) = nearest_points(number::both(features.each_ref(), |(placed, _)| placed), near.points)?;
         Some(n * T::constant(near.sign)).filter(|n| n.value().is_finite())
     }
 
     /// The features that hold the nearest points.
     pub(super) fn features(&self, shapes: [ShapeId; 2], near: &Nearest) -> [(Placed<T>, T); 2] {
-        [0, 1].map(|k| self.feature(shapes[k], near.features[k], near.points[1 - k]))
+        number::both([0, 1], |k| self.feature(shapes[k], near.features[k], near.points[1 - k]))
     }
 
     /// False for the surface of an open mesh.
@@ -265,11 +272,11 @@ impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
             .iter()
             .enumerate()
             .map(|(k, pair)| {
-                let [(p, r), (q, s)] = pair.shapes.map(|shape| self.ball(shape));
+                let [(p, r), (q, s)] = number::both(pair.shapes, |shape| self.ball(shape));
                 ((q - p).norm() - r - s, k)
             })
             .collect();
-        bounds.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        sort(&mut bounds);
         let mut least: Option<(usize, Nearest)> = None;
         for (bound, k) in bounds {
             if least.as_ref().is_some_and(|(_, found)| bound > found.distance) {
@@ -292,6 +299,11 @@ impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
     }
 }
 
+/// Sorts pairs by a lower bound of their distance, once for all kinds of numbers.
+fn sort(bounds: &mut [(f64, usize)]) {
+    bounds.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+}
+
 /// Core of a shape from its numbers, its points and directions of its bodies; `None` for a surface.
 fn core_of<T: Real>(
     model: &Model,
@@ -304,12 +316,12 @@ fn core_of<T: Real>(
     let axis = |body: BodyId| direction(body, axis.expect("a shape with an axis"));
     Some(match &model.shapes[shape.0].kind {
         ShapeKind::Sphere { centre } => Core::Point(point(*centre)),
-        ShapeKind::Capsule { ends } => Core::Segment(ends.map(point)),
+        ShapeKind::Capsule { ends } => Core::Segment(number::both(*ends, point)),
         ShapeKind::Ring { centre, .. } => {
             Core::Circle(Circle { centre: point(*centre), axis: axis(body(*centre)), radius: size })
         }
         ShapeKind::Cylinder { ends, .. } => {
-            let [a, b] = ends.map(point);
+            let [a, b] = number::both(*ends, point);
             let length = (b - a).norm();
             let middle = Circle {
                 centre: (a + b) * T::constant(0.5),

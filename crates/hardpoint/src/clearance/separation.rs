@@ -14,7 +14,7 @@
 //! A circle has the bound of its disc, and from a point its own: the distance by the formula of `feature.rs`, always.
 
 use crate::law::TimeJet;
-use crate::number::{Interval, Jet};
+use crate::number::{self, Interval, Jet};
 use crate::space::{Real, Vec3};
 
 use super::circle::Circle;
@@ -96,7 +96,7 @@ pub(crate) fn separations(
         Direction::Turning { coefficients: [a, b, c, d], since } => {
             let time = Jet::time(over - Interval::constant(since));
             let component = |of: [f64; 4]| {
-                let [a, b, c, d] = of.map(|x| Jet::constant(Interval::constant(x)));
+                let [a, b, c, d] = number::each(&of, |x| Jet::constant(Interval::constant(x)));
                 a + time * (b + time * (c + time * d))
             };
             Vec3::new(
@@ -117,7 +117,7 @@ pub(crate) fn separations(
         }
         Direction::Facet { of, corners } => {
             let EnclosedSolid::Hull(points) = solids[of] else { return None };
-            let [a, b, c] = corners.map(|k| points[k as usize]);
+            let [a, b, c] = number::each(&corners, |k| points[k as usize]);
             let outward = (b - a).cross(c - a);
             if of == 0 { outward } else { -outward }
         }
@@ -131,7 +131,7 @@ pub(crate) fn separations(
         }
     };
     let n = n * (Jet::constant(Interval::one()) / n.norm());
-    let [of_first, of_second] = [0, 1].map(|k| {
+    let [of_first, of_second] = number::both([0, 1], |k| {
         let side = match direction {
             Direction::Normal { of, side } if of == k => Some(side),
             Direction::Normal { .. }
@@ -170,7 +170,7 @@ fn supports(
         }
         (Core::Cylinder { middle, half_width }, None) => {
             let beyond = rim(middle, n);
-            [-1.0, 1.0].map(|side| (middle.moved(*half_width * side).centre, beyond)).to_vec()
+            number::both([-1.0, 1.0], |side| (middle.moved(*half_width * side).centre, beyond)).to_vec()
         }
         (Core::HalfSpace { point, .. }, Some(_)) => vec![(*point, zero)],
         (Core::HalfSpace { .. }, None) => return None,

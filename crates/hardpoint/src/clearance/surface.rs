@@ -3,6 +3,7 @@
 //! The surface of a closed mesh and of a convex hull has an inside: points there have negative distances, and the
 //! distance of a core is that of its deepest point.
 
+use crate::number;
 use crate::space::{Pose, Surface, TrianglePart, Vec3, nearest_of_triangle};
 
 use super::circle::Circle;
@@ -27,7 +28,7 @@ impl View<'_> {
     fn triangle(&self, t: usize) -> ([Vec3; 3], [u32; 3]) {
         match self {
             Self::Mesh(surface) => (surface.corners(t), surface.triangles()[t]),
-            Self::Hull { points, facets } => (facets[t].map(|k| points[k as usize]), facets[t]),
+            Self::Hull { points, facets } => (number::each(&facets[t], |k| points[k as usize]), facets[t]),
         }
     }
 
@@ -81,7 +82,7 @@ impl View<'_> {
         if let Self::Hull { points, facets } = self {
             // Inside a convex hull the nearest facet is the one whose plane is nearest.
             let height = |f: &[u32; 3]| {
-                let [a, b, c] = f.map(|k| points[k as usize]);
+                let [a, b, c] = number::each(f, |k| points[k as usize]);
                 let normal = (b - a).cross(c - a);
                 let length = normal.norm();
                 (normal.dot(p - a) / length, normal * (1.0 / length), *f)
@@ -115,7 +116,7 @@ impl View<'_> {
     /// The nearest points of a triangle's edges and a core; `core_and_edge` is given both ends of an edge.
     fn edges(&self, t: usize, each: impl Fn([Vec3; 2]) -> Nearest) -> Nearest {
         let (corners, ids) = self.triangle(t);
-        nearer([0, 1, 2].map(|k| {
+        nearer(number::each(&[0, 1, 2], |k| {
             let next = (k + 1) % 3;
             let near = each([corners[k], corners[next]]);
             Nearest { features: [near.features[0], of_edge(near.features[1], [ids[k], ids[next]])], ..near }
@@ -143,11 +144,11 @@ impl Surroundings for Within<'_> {
         let points = self.0.points();
         let bound = match near.features[1] {
             Feature::Facet(ids) => {
-                let corners = ids.map(|k| points[k as usize]);
+                let corners = number::each(&ids, |k| points[k as usize]);
                 part.lowest_corner(|p| -(nearest_of_triangle(p, corners, ids).0 - p).norm())
             }
             Feature::Edge(ids) => {
-                let edge = Core::Segment(ids.map(|k| points[k as usize]));
+                let edge = Core::Segment(number::both(ids, |k| points[k as usize]));
                 part.lowest_corner(|p| -from_point(p, &edge).distance)
             }
             Feature::Vertex(_)
@@ -202,7 +203,7 @@ pub(super) fn core_and_surface(core: &Core, view: View<'_>) -> Nearest {
         Core::Segment(ends) => segment_and_surface(*ends, view),
         Core::Circle(circle) => circle_and_surface(circle, Feature::Circle(0.0), view),
         Core::Cylinder { middle, half_width } => {
-            let rims = [-1.0, 1.0].map(|side| {
+            let rims = number::both([-1.0, 1.0], |side| {
                 circle_and_surface(&middle.moved(half_width * side), Feature::Circle(side), view)
             });
             let drum = around_drum(middle, *half_width);
@@ -292,7 +293,7 @@ fn circle_and_triangle(
 ) -> Nearest {
     // Over the face the lowest or highest point of the circle is nearest, or all of it.
     let up = Slope::over(circle, corners).up.unwrap_or_else(|| circle.axis.any_perpendicular());
-    let over_face = [-1.0, 1.0].map(|side| {
+    let over_face = number::both([-1.0, 1.0], |side| {
         let p = circle.centre + up * (circle.radius * side);
         let (q, part) = nearest_of_triangle(p, corners, ids);
         found([itself, of_part(part)], [p, q], (q - p).norm())
@@ -343,7 +344,7 @@ fn crossing(circle: &Circle, corners: [Vec3; 3]) -> Option<Vec3> {
     let inside =
         |p: &Vec3| [[a, b], [b, c], [c, a]].iter().all(|[u, v]| normal.dot((*v - *u).cross(*p - *u)) >= 0.0);
     // NaN where the circle is above or below the plane, or the triangle has no area.
-    let places = [sin, -sin].map(|sin| centre + (up * cos + axis.cross(up) * sin) * radius);
+    let places = number::both([sin, -sin], |sin| centre + (up * cos + axis.cross(up) * sin) * radius);
     places.into_iter().find(inside)
 }
 
@@ -407,7 +408,7 @@ pub(super) fn surfaces(a: View<'_>, b: View<'_>, place: Pose) -> Nearest {
     let mut overlap = None;
     let mut each = |s: usize, t: usize| {
         let ((p, ids), (q, others)) = (a.triangle(s), b.triangle(t));
-        let q = q.map(|q| place.point(q));
+        let q = number::each(&q, |q| place.point(q));
         for k in 0..3 {
             let (own, other) = ([p[k], p[(k + 1) % 3]], [q[k], q[(k + 1) % 3]]);
             if is_pierced(own, q) || is_pierced(other, p) {
@@ -417,7 +418,7 @@ pub(super) fn surfaces(a: View<'_>, b: View<'_>, place: Pose) -> Nearest {
         }
         // Of edges, and of corners over faces.
         let edges = |k: usize| {
-            nearer([0, 1, 2].map(|n| {
+            nearer(number::each(&[0, 1, 2], |n| {
                 let near = segment_and_edge([p[k], p[(k + 1) % 3]], [q[n], q[(n + 1) % 3]]);
                 let [own, other] = near.features;
                 let features = [
@@ -433,8 +434,8 @@ pub(super) fn surfaces(a: View<'_>, b: View<'_>, place: Pose) -> Nearest {
         };
         let near = nearer([
             nearer([0, 1, 2].map(edges)),
-            nearer([0, 1, 2].map(|k| corner(p[k], ids[k], q, others))),
-            nearer([0, 1, 2].map(|k| corner(q[k], others[k], p, ids))).reversed(),
+            nearer(number::each(&[0, 1, 2], |k| corner(p[k], ids[k], q, others))),
+            nearer(number::each(&[0, 1, 2], |k| corner(q[k], others[k], p, ids))).reversed(),
         ]);
         if near.distance < best.distance {
             best = near;
@@ -484,7 +485,7 @@ pub(super) fn moved(core: &Core, pose: Pose) -> Core {
     let circle = |c: &Circle| Circle { centre: pose.point(c.centre), axis: pose.rot * c.axis, ..*c };
     match core {
         Core::Point(p) => Core::Point(pose.point(*p)),
-        Core::Segment(ends) => Core::Segment(ends.map(|p| pose.point(p))),
+        Core::Segment(ends) => Core::Segment(number::both(*ends, |p| pose.point(p))),
         Core::Circle(c) => Core::Circle(circle(c)),
         Core::Cylinder { middle, half_width } => {
             Core::Cylinder { middle: circle(middle), half_width: *half_width }

@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use crate::model::{ShapeId, ShapeKind, with_core};
+use crate::number;
 use crate::space::{Pose, Surface, Vec3};
 
 use super::core::Core;
@@ -99,7 +100,7 @@ impl ShapeAtPose {
                     let (sin, cos) = (f64::from(n) * TAU / f64::from(RIM_POINTS)).sin_cos();
                     (x * cos + y * sin) * middle.radius
                 };
-                let ends = [-1.0, 1.0].map(|side| middle.moved(half_width * side).centre);
+                let ends = number::both([-1.0, 1.0], |side| middle.moved(half_width * side).centre);
                 ends.iter().flat_map(|end| (0..RIM_POINTS).map(move |n| *end + out(n))).collect()
             }
             Solid::Core(_) => Vec::new(),

@@ -20,7 +20,7 @@ mod dot2;
 mod lowest_point;
 mod spherical;
 
-use crate::number::{Jet, Rates};
+use crate::number::{self, Jet, Rates};
 use crate::space::{Mat3, Pose, Real, Twist, Vec3, Wrench};
 
 /// One elementary constraint equation between two markers. Axes are 0, 1, 2 for x, y, z.
@@ -120,13 +120,13 @@ impl<T: Real> MarkerPair<T> {
             Vec3::new(Jet([e.x, d.x, dd.x]), Jet([e.y, d.y, dd.y]), Jet([e.z, d.z, dd.z]))
         };
         let marker = |Pose { rot, r }: Pose<T>, v, a| Pose {
-            rot: Mat3 { cols: rot.cols.map(|e| vector(direction_rates(e, v, a))) },
+            rot: Mat3 { cols: number::each(&rot.cols, |e| vector(direction_rates(e, v, a))) },
             r: vector(point_rates(r, v, a)),
         };
         MarkerPair {
             i: marker(self.i, rates.v_i, rates.a_i),
             j: marker(self.j, rates.v_j, rates.a_j),
-            axes: Mat3 { cols: self.axes.cols.map(|e| e.map(Jet::constant)) },
+            axes: Mat3 { cols: number::each(&self.axes.cols, |e| e.map(Jet::constant)) },
         }
     }
 }
@@ -249,7 +249,7 @@ impl Row {
     #[inline(never)]
     fn rare_wrench_rates<T: Real>(self, ends: &MarkerPair<T>, rates: &MarkerPairRates<T>) -> [Wrench<T>; 2] {
         let Wrench { m, f } = self.rare_wrench(&ends.moving(rates));
-        [1, 2].map(|n| Wrench { m: m.map(|x| x.0[n]), f: f.map(|x| x.0[n]) })
+        number::both([1, 2], |n| Wrench { m: m.map(|x| x.0[n]), f: f.map(|x| x.0[n]) })
     }
 
     /// True if it depends on the axes of the markers, not only on their origins.

@@ -2,7 +2,7 @@
 
 use crate::model::change::{self, Change, changes};
 use crate::model::{DriverId, HardpointId, JointId, Model, ParameterId};
-use crate::number::Real;
+use crate::number::{self, Real};
 use crate::space::{Pose, Vec3, rotation_from_euler_313};
 
 /// Effect of a kind of change on the design, for a value b of its variable. The default methods have no effect.
@@ -109,7 +109,8 @@ impl Effect for change::Field {
         // A R A^T in global axes
         let body = model.bodies[self.body.0].frame.rot.spread();
         let (theta, c) = model.euler_of(joint, e);
-        let turned = [0, 1, 2].map(|n| T::constant(self.u[n]).times_plus(b, T::constant(theta[n])));
+        let turned =
+            number::each(&[0, 1, 2], |n| T::constant(self.u[n]).times_plus(b, T::constant(theta[n])));
         let turned = rotation_from_euler_313(turned) * c.transpose().spread();
         Pose { rot: body * turned * body.transpose() * marker.rot, r: marker.r + body * self.v.spread() * b }
     }

@@ -11,7 +11,7 @@
 use crate::constraint::Row;
 use crate::joint::Need;
 use crate::model::{Joint, JointId, Model};
-use crate::number::Real;
+use crate::number::{self, Real};
 use crate::space::{Mat3, Pose, Vec3};
 
 /// Body-fixed data of one design: all that the analysis uses besides the drivers' laws.
@@ -42,7 +42,7 @@ impl<T: Real> Geometry<T> {
         let rot = match kind.axis2 {
             // A_j^T A_i C_i in the design configuration
             Need::OnBodyJ => {
-                let [frame_i, frame_j] = bodies.map(|b| model.bodies[b.0].frame.rot);
+                let [frame_i, frame_j] = number::both(*bodies, |b| model.bodies[b.0].frame.rot);
                 (frame_j.transpose() * frame_i).spread() * m_i.rot
             }
             Need::Required | Need::Optional | Need::Orienting | Need::Unused => m_j.rot,
@@ -79,19 +79,20 @@ pub(crate) struct ShapeGeometry<T> {
 
 impl<T: Copy> ShapeGeometry<T> {
     /// Applies a function to every number.
-    pub fn map<U>(&self, f: impl Fn(T) -> U + Copy) -> ShapeGeometry<U> {
+    pub fn map<U: Copy>(&self, f: impl Fn(T) -> U + Copy) -> ShapeGeometry<U> {
         ShapeGeometry { axis: self.axis.map(|a| a.map(f)), size: f(self.size), round: f(self.round) }
     }
 }
 
 impl<T: Copy> BodyFixed<T> {
     /// Applies a function to every number.
-    pub fn map<U>(&self, f: impl Fn(T) -> U + Copy) -> BodyFixed<U> {
-        let pose = |p: Pose<T>| Pose { rot: Mat3 { cols: p.rot.cols.map(|c| c.map(f)) }, r: p.r.map(f) };
+    pub fn map<U: Copy>(&self, f: impl Fn(T) -> U + Copy) -> BodyFixed<U> {
+        let pose =
+            |p: Pose<T>| Pose { rot: Mat3 { cols: number::each(&p.rot.cols, |c| c.map(f)) }, r: p.r.map(f) };
         BodyFixed {
             points: self.points.iter().map(|p| p.map(f)).collect(),
-            directions: self.directions.iter().map(|d| d.map(|d| d.map(|d| d.map(f)))).collect(),
-            markers: self.markers.iter().map(|m| m.map(|m| m.map(pose))).collect(),
+            directions: self.directions.iter().map(|d| number::both(*d, |d| d.map(|d| d.map(f)))).collect(),
+            markers: self.markers.iter().map(|m| m.map(|m| number::both(m, pose))).collect(),
             shapes: self.shapes.iter().map(|s| s.map(f)).collect(),
             size: self.size,
         }

@@ -21,7 +21,7 @@ use crate::model::{
     BodyId, Change, DesignVariable, Direction, Driver, DriverId, ElementId, HardpointId, Joint, JointId,
     Length, Measure, Model, NumberId, PointId, Shape, ShapeKind, SharedModel, Source, Target, VariableId,
 };
-use crate::number::{Dual, Real};
+use crate::number::{self, Dual, Real};
 use crate::space::{Mat3, Pose, Twist, Vec3};
 
 use super::change::Effect;
@@ -88,7 +88,7 @@ impl<'m> DesignMap<'m> {
         let model = self.model();
         let design = PlacedDesign::new(self, values.to_vec());
         Geometry {
-            markers: (0..model.joints.len()).map(|j| [0, 1].map(|e| design.marker(j, e))).collect(),
+            markers: (0..model.joints.len()).map(|j| number::both([0, 1], |e| design.marker(j, e))).collect(),
             kept: (0..model.joints.len()).map(|j| design.kept(j)).collect(),
             points: (0..model.points.len()).map(|k| design.point(k)).collect(),
             spin_axes: model.wheels.iter().map(|w| design.in_body(w.body, w.spin_axis)).collect(),
@@ -120,7 +120,7 @@ impl<'m> DesignMap<'m> {
         let (model, design) = (self.model(), PlacedDesign::new(self, values.to_vec()));
         let markers = |m: &Measure| {
             let joint = m.kind.joint_value()?;
-            Some([0, 1].map(|e| design.marker(joint.0, e)))
+            Some(number::both([0, 1], |e| design.marker(joint.0, e)))
         };
         BodyFixed {
             points: (0..model.points.len()).map(|k| design.point(k)).collect(),
@@ -478,7 +478,7 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
     /// Returns the constants of joint j.
     fn kept(&self, j: usize) -> JointConstants<T> {
         let (joint, zero) = (&self.design_map.model().joints[j], T::zero());
-        let [m_i, m_j] = [0, 1].map(|e| self.global_marker(j, e, &self.for_lengths));
+        let [m_i, m_j] = number::both([0, 1], |e| self.global_marker(j, e, &self.for_lengths));
         // d = P_j - P_i of the design; the constants of a joint are functions of it: L = abs(d), z_i . d, z_i . z_j,
         // the distance from a curve.
         let (d, z_i, z_j) = (m_j.r - m_i.r, m_i.rot.cols[2], m_j.rot.cols[2]);
@@ -500,7 +500,7 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
         });
         // Parallel axes have no angle about z_i; it would have no derivative.
         let has_course = joint.kind.coordinates.iter().any(|c| c.row == Row::Course);
-        let [x_i, y_i] = [0, 1].map(|k| m_i.rot.cols[k]);
+        let [x_i, y_i] = number::both([0, 1], |k| m_i.rot.cols[k]);
         let course = if has_course { y_i.dot(z_j).atan2(x_i.dot(z_j)) } else { zero };
         let lowest = joint.kind.coordinates.iter().find(|c| matches!(c.row, Row::LowestPoint(_)));
         let height = lowest.map_or(zero, |c| {
@@ -515,7 +515,7 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
         let model = self.design_map.model();
         let (bodies, nominal, axes) = model.axes_of(e)?;
         let rot = self.followed(nominal.spread(), axes, &self.values);
-        Some(bodies.map(|body| self.frame(body).rot.transpose() * rot))
+        Some(number::both(bodies, |body| self.frame(body).rot.transpose() * rot))
     }
 
     /// Returns a number of a mass or force, SI.
@@ -551,7 +551,7 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
     /// Returns the directions that a measure depends on, in their bodies' frames.
     fn directions(&self, measure: &Measure) -> [Option<Vec3<T>>; 2] {
         let in_body = |(body, axis)| self.in_body(body, axis);
-        self.design_map.model().directions(measure).map(|d| d.map(in_body))
+        number::both(self.design_map.model().directions(measure), |d| d.map(in_body))
     }
 
     /// Returns a direction in a body's frame: `A^T h`.

@@ -4,7 +4,7 @@ use crate::draft::{CheckElement, ElementCheck};
 use crate::load::{AppliedLoads, MassFormula, Solid, Spread};
 use crate::model::element::{Block, MassProperties};
 use crate::model::{BodyId, Model, NumberId, PointId};
-use crate::number::Real;
+use crate::number::{self, Real};
 use crate::space::{Mat3, Vec3};
 
 impl MassProperties for Block {
@@ -28,10 +28,11 @@ impl CheckElement for Block {
 impl MassFormula for Block {
     fn solid<T: Real>(&self, at: &AppliedLoads<'_, T>) -> Solid<T> {
         let (body, zero) = (self.body(at.model), T::zero());
-        let [x, y, z] = [self.x, self.y, self.z].map(|n| at.number(n.0));
+        let [x, y, z] = number::each(&[self.x, self.y, self.z], |n| at.number(n.0));
         let mass = self.mass(|n| at.number(n), |_, _| zero);
         let twelfth = mass * T::constant(1.0 / 12.0);
-        let [a, b, c] = [y * y + z * z, z * z + x * x, x * x + y * y].map(|square| square * twelfth);
+        let [a, b, c] =
+            number::each(&[y * y + z * z, z * z + x * x, x * x + y * y], |square| square * twelfth);
         let cols = [Vec3::new(a, zero, zero), Vec3::new(zero, b, zero), Vec3::new(zero, zero, c)];
         let inertia = Spread::Matrix(at.turned(body.0), Mat3 { cols });
         Solid { body, mass, centre: at.point(self.centre), inertia }

@@ -4,6 +4,7 @@ use crate::draft::{CheckElement, ElementCheck};
 use crate::load::{AppliedLoads, ForceFormula};
 use crate::model::element::{ActsOn, Bushing, Compliance, ForceProperties, Properties, StiffnessEntry};
 use crate::model::{Dimension, ElementId, Model};
+use crate::number;
 use crate::space::{Real, Wrench};
 
 impl Bushing {
@@ -38,7 +39,7 @@ impl ForceProperties for Bushing {
             acts_on: ActsOn::Points([self.from, self.to]),
             axes: [self.axis, self.axis2],
             dimension: Dimension::FORCE,
-            given: [self.preload_x, self.preload_y, self.preload_z].map(|n| n.map(|n| n.0)),
+            given: number::each(&[self.preload_x, self.preload_y, self.preload_z], |n| n.map(|n| n.0)),
             table: None,
             law: None,
             is_arithmetic: self.law().is_arithmetic(),
@@ -79,7 +80,7 @@ impl ForceFormula for Bushing {
             each(opening.coordinates[k], stiffness);
         }
         for StiffnessEntry { row, column, value } in law.coupled.iter().flat_map(|matrix| &matrix.entries) {
-            let ([a, b], k) = ([*row, *column].map(|k| opening.coordinates[k]), at.number(*value));
+            let ([a, b], k) = (number::both([*row, *column], |k| opening.coordinates[k]), at.number(*value));
             if row == column {
                 each(a, k);
             } else {

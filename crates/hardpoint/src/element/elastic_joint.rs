@@ -6,6 +6,7 @@ use crate::linalg::semidefinite::is_definite;
 use crate::load::{AppliedLoads, ForceFormula};
 use crate::model::element::{ActsOn, Compliance, ElasticJoint, ForceProperties, Properties};
 use crate::model::{Dimension, ElementId, Joint, Model, NumberId};
+use crate::number;
 use crate::space::{Real, Wrench};
 
 impl ForceProperties for ElasticJoint {
@@ -15,7 +16,7 @@ impl ForceProperties for ElasticJoint {
             acts_on: ActsOn::Joint(self.joint),
             axes: [None; 2],
             dimension: Dimension::FORCE,
-            given: [self.preload_x, self.preload_y, self.preload_z].map(|n| n.map(|n| n.0)),
+            given: number::each(&[self.preload_x, self.preload_y, self.preload_z], |n| n.map(|n| n.0)),
             table: None,
             law: None,
             is_arithmetic: self.law().is_arithmetic(),

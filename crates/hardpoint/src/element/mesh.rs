@@ -4,7 +4,7 @@ use crate::draft::{CheckElement, ElementCheck};
 use crate::load::{AppliedLoads, MassFormula, Solid, Spread};
 use crate::model::element::{MassProperties, Mesh};
 use crate::model::{BodyId, Model, NumberId, PointId};
-use crate::number::Real;
+use crate::number::{self, Real};
 use crate::space::Mat3;
 
 impl MassProperties for Mesh {
@@ -32,7 +32,7 @@ impl MassFormula for Mesh {
         let (pose, frame) = (at.bodies[body.0].pose, at.model.bodies[body.0].frame);
         let place = if mesh.in_body { mesh.centre } else { frame.inverse().point(mesh.centre) };
         let axes = if mesh.in_body { pose.rot } else { at.turned(body.0) };
-        let cols = mesh.inertia().map(|col| col.spread() * density);
+        let cols = number::each(&mesh.inertia(), |col| col.spread() * density);
         let inertia = Spread::Matrix(axes, Mat3 { cols });
         let centre = pose.point(place.spread());
         Solid { body: *body, mass, centre, inertia }

@@ -4,6 +4,7 @@ use crate::draft::{CheckElement, ElementCheck};
 use crate::load::{AppliedLoads, ForceFormula};
 use crate::model::element::{ActsOn, Compliance, Force, ForceProperties, Properties, WheelForce};
 use crate::model::{Dimension, ElementId, GROUND, Model, WheelPoint};
+use crate::number;
 use crate::space::{Real, Vec3, Wrench};
 
 impl WheelForce {
@@ -15,7 +16,7 @@ impl WheelForce {
     /// Point of the wheel at which it acts, the force, and the moment about z.
     fn road<T: Real>(&self, at: &AppliedLoads<'_, T>, e: ElementId) -> (Vec3<T>, Vec3<T>, Vec3<T>) {
         let now = at.wheel(self.wheel);
-        let [o, f, z] = [self.outboard, self.forward, self.up].map(|n| at.or_zero(n.map(|n| n.0)));
+        let [o, f, z] = number::each(&[self.outboard, self.forward, self.up], |n| at.or_zero(n.map(|n| n.0)));
         let up: Vec3<T> = Vec3::AXES[2].spread();
         let push = now.outboard() * o + now.forward() * f + up * z;
         let turn = up * (now.side * at.or_zero(self.about_up.map(|n| n.0)));
@@ -36,7 +37,7 @@ impl ForceProperties for WheelForce {
             dimension: if self.is_moment() { Dimension::MOMENT } else { Dimension::FORCE },
             given: match self.about_up {
                 Some(moment) if self.is_moment() => [Some(moment.0), None, None],
-                Some(_) | None => [self.outboard, self.forward, self.up].map(|n| n.map(|n| n.0)),
+                Some(_) | None => number::each(&[self.outboard, self.forward, self.up], |n| n.map(|n| n.0)),
             },
             table: None,
             law: self.law.as_ref(),

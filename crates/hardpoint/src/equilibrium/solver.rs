@@ -9,7 +9,7 @@ use crate::model::{DriverId, MeasureKind, Model, UnitForce};
 use crate::motion::mechanism::{Mechanism, StepRejection};
 use crate::motion::stepper::Stepper;
 use crate::motion::{GivingDirection, Stop, StopKind, advance};
-use crate::number::Dual;
+use crate::number::{self, Dual};
 use crate::sensitivity::PlanVelocity;
 use crate::space::{Pose, Twist};
 use crate::topology::Topology;
@@ -356,7 +356,7 @@ impl<'a> EquilibriumSolver<'a> {
     ) -> bool {
         // abs(p - predicted) <= 0.1 max abs(p - p_k),  abs(dp . (K - predicted) dp) <= 0.1 abs(dp . K dp)
         let step = self.between(&self.last.drivers, drivers);
-        let [predicted, found] = [stiffness, &self.stiffness].map(|k| along(k, &step));
+        let [predicted, found] = number::both([stiffness, &self.stiffness], |k| along(k, &step));
         self.distance(one, drivers, position) <= f64::max(CONFIRMED * way, QUADRATIC)
             && (way <= NEAR || (found - predicted).abs() <= CONFIRMED * found.abs())
     }

@@ -36,7 +36,7 @@ pub use sequence::Piece;
 pub use table::{SplineDegree, SplineEndRates, SplineEnds, Table};
 
 use crate::expression::{self, ExpressionError, Range, Stretch};
-use crate::number::{Dual, Interval, Jet, Real};
+use crate::number::{self, Dual, Interval, Jet, Real};
 
 kinds! {
     formula: ExpressionLaw,
@@ -274,7 +274,7 @@ impl Law {
         self.check_index(parameter);
         let seed = Seed { parameter, size: Dual::variable(0.0) };
         let f = self.evaluate(TimeJet::time(Dual::constant(t)), Some(seed));
-        Jet(f.derivatives().map(|f| f.d))
+        Jet(number::each(&f.derivatives(), |f| f.d))
     }
 
     /// This law with another value of one of its [parameters](Self::parameters).

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::expression::Stretch;
 use crate::linalg::{Basis, EndKind, Segment};
-use crate::number::{Interval, Jet, Real};
+use crate::number::{self, Interval, Jet, Real};
 
 use super::Law;
 use super::error::LawError;
@@ -300,7 +300,7 @@ impl LawKind for Spline {
         let (first, last) = (self.times[0], self.times[self.times.len() - 1]);
         // Segment k, repeated after a time.
         let part = |k: usize, from: f64, to: f64, shift: f64| {
-            let [low, high] = [from, to].map(|t| t.clamp(over.low, over.high));
+            let [low, high] = number::both([from, to], |t| t.clamp(over.low, over.high));
             let since =
                 (Interval { low, high } - Interval::constant(shift)) - Interval::constant(self.times[k]);
             self.curve(&self.segments[k], Jet::time(since))

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::number::{Function, Real};
+use crate::number::{self, Function, Real};
 
 use super::matrix::{Factored, MOST_GROWTH, Watched};
 
@@ -226,7 +226,7 @@ impl<T: Real> SparseLu<T> {
             return;
         };
         let (rows, columns): (Vec<u32>, Vec<u32>) = pivots.iter().map(|p| (p.row, p.column)).unzip();
-        let [row_places, column_places] = [&rows, &columns].map(|order| inverse(order));
+        let [row_places, column_places] = number::both([&rows, &columns], |order| inverse(order));
         for (to, &c) in self.places.iter_mut().zip(&self.columns.items) {
             *to = column_places[c as usize];
         }

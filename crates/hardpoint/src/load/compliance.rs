@@ -12,7 +12,7 @@ use crate::measure::{Instant, StepValues, bodies_asked_for};
 use crate::model::element::Compliance;
 use crate::model::{DriverId, ElementId, GROUND, MeasureKind, Model, UnitForce, WheelId};
 use crate::motion::mechanism::Mechanism;
-use crate::number::{Dual, Real};
+use crate::number::{self, Dual, Real};
 use crate::sensitivity::{PairDirection, Seconds, pair_with_variables, values_along_variable};
 use crate::space::{Mat3, Pose, Twist, Vec3};
 use crate::topology::{RowId, Topology};
@@ -225,8 +225,10 @@ impl<'a> Compliances<'a> {
     fn contact(&self, poses: &[Pose<Number>], geometry: &Geometry<Number>, wheel: WheelId) -> Vec3<Number> {
         let body = self.model.wheels[wheel.0].body.0;
         let now = |x: Number| Dual::constant(x.v);
-        let held =
-            |p: &Pose<Number>| Pose { rot: Mat3 { cols: p.rot.cols.map(|c| c.map(now)) }, r: p.r.map(now) };
+        let held = |p: &Pose<Number>| Pose {
+            rot: Mat3 { cols: number::each(&p.rot.cols, |c| c.map(now)) },
+            r: p.r.map(now),
+        };
         let mut bodies = vec![MovingBody::at_rest(); poses.len()];
         bodies[body].pose = held(&poses[body]);
         let acting = AppliedLoads { bodies: &bodies, ..self.position.loads(self.model, geometry) };

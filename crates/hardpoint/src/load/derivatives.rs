@@ -19,7 +19,7 @@ use crate::design::Geometry;
 use crate::model::{DriverId, ElementId, GROUND, MeasureKind, Model, VariableId};
 use crate::motion::kinematics::State;
 use crate::motion::level::of_body;
-use crate::number::{Dual, Real};
+use crate::number::{self, Dual, Real};
 use crate::sensitivity::{Differentiated, Turning};
 use crate::space::{Twist, Vec3, Wrench};
 use crate::topology::Topology;
@@ -318,7 +318,7 @@ impl<'a, T: Real> LoadDerivatives<'a, T> {
             }
             self.position.bodies[b] = self.nominal[b];
             for (load, terms) in self.loads.iter_mut().zip(&mut self.terms) {
-                let own = load.virtual_twists[b].components().map(|y| y.value().abs());
+                let own = number::each(&load.virtual_twists[b].components(), |y| y.value().abs());
                 let mut slopes = [T::zero(); 6];
                 for (wrenches, of) in self.by_units.iter().zip(beside) {
                     let y = load.virtual_twists[*of];
@@ -524,7 +524,7 @@ pub(super) fn forces_on_bodies(model: &Model) -> Vec<Vec<ElementId>> {
 fn bodies_beside(model: &Model) -> Vec<Vec<usize>> {
     let mut beside: Vec<Vec<usize>> = (0..model.bodies.len()).map(|b| vec![b]).collect();
     for force in model.elements.iter().filter_map(|e| e.kind.force(model)) {
-        let [i, j] = force.acts_on.bodies(model).map(|b| b.0);
+        let [i, j] = number::both(force.acts_on.bodies(model), |b| b.0);
         for (of, other) in [(i, j), (j, i)] {
             if other != GROUND.0 && !beside[of].contains(&other) {
                 beside[of].push(other);

@@ -7,7 +7,7 @@
 use crate::design::Geometry;
 use crate::model::element::ActsOn;
 use crate::model::{ElementId, JointId, LoadMode, Model};
-use crate::number::{Dual, Real};
+use crate::number::{self, Dual, Real};
 use crate::space::{Mat3, Twist, Vec3, Wrench};
 
 use super::acting::{AppliedLoads, MovingBody, Solid};
@@ -159,7 +159,7 @@ impl<T: Real> ChangedGeometry<T> {
         let moves = |e: &ElementId| {
             let solid = acting.solid(&model.elements[e.0].kind);
             solid.is_some_and(|Solid { mass, centre, inertia, .. }| {
-                let turning = Vec3::AXES.map(|axis| inertia.on(axis.spread()));
+                let turning = number::each(&Vec3::AXES, |axis| inertia.on(axis.spread()));
                 let vectors = turning.iter().chain([&centre]).flat_map(|v| [v.x, v.y, v.z]);
                 !vectors.chain([mass]).all(|x| x.d.vanishes())
             })

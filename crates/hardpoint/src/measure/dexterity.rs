@@ -9,7 +9,7 @@
 //! of twists the entries of J have one unit).
 
 use crate::model::JacobianValue;
-use crate::number::Real;
+use crate::number::{self, Real};
 use crate::space::Vec3;
 
 const MOST_DRIVERS: usize = JacobianValue::MOST_DRIVERS;
@@ -85,7 +85,7 @@ fn by_size(mut a: Square, n: usize) -> Square {
     }
     let mut order: [usize; MOST_DRIVERS] = std::array::from_fn(|k| k);
     order[..n].sort_by(|j, k| a[*k][*k].total_cmp(&a[*j][*j]));
-    order.map(|k| vectors[k])
+    number::each(&order, |k| vectors[k])
 }
 
 #[cfg(test)]

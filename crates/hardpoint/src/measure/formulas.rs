@@ -8,7 +8,7 @@ use crate::model::{
     ArmPlane, AxleMeasure, BodyId, ClearanceId, JointId, MeasureKind, Model, OutputSource, PointId, Ray,
     WheelId, loads,
 };
-use crate::number::Real;
+use crate::number::{self, Real};
 use crate::space::{Pose, Vec3};
 
 use super::wheel::{WheelAt, camber, toe};
@@ -170,13 +170,13 @@ impl<'a, T: Real> Instant<'a, T> {
     /// A body's angular velocity, global.
     fn angular_velocity(&self, body: BodyId) -> Vec3<T> {
         // a. = omega x a of each axis, so  sum a x a. = 3 omega - sum a (a . omega) = 2 omega
-        let turns = self.poses[body.0].rot.cols.map(|a| a.cross(a.map(T::rate)));
+        let turns = number::each(&self.poses[body.0].rot.cols, |a| a.cross(a.map(T::rate)));
         (turns[0] + turns[1] + turns[2]) * T::constant(0.5)
     }
 
     /// The directions of an angle, of any length.
     fn rays(&self, k: usize, rays: [&Ray; 2]) -> [Vec3<T>; 2] {
-        [0, 1].map(|end| match *rays[end] {
+        number::both([0, 1], |end| match *rays[end] {
             Ray::Between([from, to]) => self.point(to) - self.point(from),
             Ray::Fixed { body, .. } => self.direction(k, end, body),
         })
@@ -184,7 +184,7 @@ impl<'a, T: Real> Instant<'a, T> {
 
     /// Formulas and signs: `docs/measures.md`.
     fn axle(&self, k: usize, wheels: [WheelId; 2], what: AxleMeasure) -> T {
-        let [left, right] = [0, 1].map(|side| self.wheel(k, side, wheels[side]));
+        let [left, right] = number::both([0, 1], |side| self.wheel(k, side, wheels[side]));
         let toe = |wheel: &WheelAt<T>| toe(wheel.spin_axis, wheel.side);
         let half = T::constant(0.5);
         let wheelbase = || T::constant(self.model.vehicle.wheelbase.unwrap_or(f64::NAN));
@@ -250,23 +250,23 @@ impl<'a, T: Real> Instant<'a, T> {
             spin_axis: pose(wheel.body).rot * self.fixed.directions[k][d].expect("a wheel has a spin axis"),
             radius: T::constant(wheel.radius),
             side: T::constant(wheel.side.sign()),
-            kingpin: wheel.kingpin.map(|points| points.map(point)),
+            kingpin: wheel.kingpin.map(|points| number::both(points, point)),
             planes: wheel.planes.map(|planes| {
-                planes.map(|plane| match plane {
+                number::both(planes, |plane| match plane {
                     // (B - A) x (C - A),    B - A
                     ArmPlane::Through(points) => {
-                        let [a, b, c] = points.map(point);
+                        let [a, b, c] = number::each(&points, point);
                         [(b - a).cross(c - a), a]
                     }
                     ArmPlane::Square(points) => {
-                        let [a, b] = points.map(point);
+                        let [a, b] = number::both(points, point);
                         [b - a, a]
                     }
                 })
             }),
             // abs(P_2 - P_1)
             spring: wheel.spring.map(|ends| {
-                let [a, b] = ends.map(point);
+                let [a, b] = number::both(ends, point);
                 self.length(b - a)
             }),
         }
@@ -284,18 +284,18 @@ impl<'a, T: Real> Instant<'a, T> {
         // atan2(abs(a_i x a_j), a_i . a_j)
         let between = |[a, b]: [Vec3<T>; 2]| angle_between(a.cross(b), a.dot(b));
         if by_axis {
-            return between([0, 1].map(|end| self.direction(k, end, j.bodies[end])));
+            return between(number::both([0, 1], |end| self.direction(k, end, j.bodies[end])));
         }
         let markers = self.fixed.markers[k].expect("a measure of a joint");
         let axis = |end: usize, c: usize| self.poses[j.bodies[end].0].rot * markers[end].rot.cols[c];
         if j.axis.is_some() && j.kind.axis != Need::Orienting {
             // The shafts of a cross are perpendicular to both pins.
             let along = if j.kind.is_cross() { 1 } else { 2 };
-            return between([0, 1].map(|end| axis(end, along)));
+            return between(number::both([0, 1], |end| axis(end, along)));
         }
         // sum a_i x a_j = 2 sin(angle) n,   sum a_i . a_j = 1 + 2 cos(angle),   over x, y and z
-        let pairs = [0, 1, 2].map(|c| (axis(0, c), axis(1, c)));
-        let [x, y, z] = pairs.map(|(a, b)| (a.cross(b), a.dot(b)));
+        let pairs = number::each(&[0, 1, 2], |c| (axis(0, c), axis(1, c)));
+        let [x, y, z] = number::each(&pairs, |(a, b)| (a.cross(b), a.dot(b)));
         angle_between(x.0 + y.0 + z.0, x.1 + y.1 + z.1 - T::constant(1.0))
     }
 

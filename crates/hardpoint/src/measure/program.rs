@@ -30,7 +30,7 @@ use crate::design::{BodyFixed, DesignMap};
 use crate::model::{BodyId, GROUND, MeasureKind, Model, OutputSource, VariableId};
 use crate::motion::execution::{Execution, ProgramMemory, Runnable, Staged};
 use crate::motion::{BodyState, Motion};
-use crate::number::{Dual, Jet, Rates, record as recording};
+use crate::number::{self, Dual, Jet, Rates, record as recording};
 use crate::sensitivity::{BodySensitivity, Sensitivities};
 use crate::space::{Mat3, Pose, Vec3};
 
@@ -431,7 +431,10 @@ pub(crate) fn dependences(
     let as_drawn = fixed(&values);
     for &b in bodies {
         let pose = poses[b];
-        poses[b] = Pose { rot: Mat3 { cols: pose.rot.cols.map(|c| c.map(unknown)) }, r: pose.r.map(unknown) };
+        poses[b] = Pose {
+            rot: Mat3 { cols: number::each(&pose.rot.cols, |c| c.map(unknown)) },
+            r: pose.r.map(unknown),
+        };
         note(0, b, depend(&as_drawn, &poses));
         poses[b] = pose;
     }

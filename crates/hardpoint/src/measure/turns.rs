@@ -10,7 +10,7 @@ use crate::model::element::ActsOn;
 use crate::model::{DriverId, ElementId, JointId, MeasureKind, Model, OutputSource};
 use crate::motion::turns::{CountedAngles, turned};
 use crate::motion::{BodyState, Motion};
-use crate::number::{Jet, Rates};
+use crate::number::{self, Jet, Rates};
 use crate::space::{Mat3, Pose, Vec3};
 use crate::topology::{CoordinateId, Topology};
 
@@ -275,7 +275,7 @@ impl<'m> PathAngles<'m> {
         };
         let Some(force) = self.model.elements[e.0].kind.force(self.model) else { return unknown };
         let [i, j] = force.acts_on.bodies(self.model);
-        let [i, j] = [i, j].map(|b| (self.poses[b.0], self.model.bodies[b.0].frame.rot));
+        let [i, j] = number::both([i, j], |b| (self.poses[b.0], self.model.bodies[b.0].frame.rot));
         let ([m_i, m_j], kept) = match joint {
             Some(joint) if matches!(force.acts_on, ActsOn::Joint(_)) => {
                 (self.geometry.elastic_markers(self.model, joint), Rates::constant(0.0))
@@ -283,9 +283,9 @@ impl<'m> PathAngles<'m> {
             Some(joint) => (self.geometry.markers[joint.0], self.geometry.kept[joint.0].by(row)),
             // Angles do not depend on the points. Without axes of its own a bushing has the global ones.
             None => {
-                let global = || [i.1, j.1].map(|rot| rot.transpose().spread());
+                let global = || number::both([i.1, j.1], |rot| rot.transpose().spread());
                 let axes = self.geometry.axes[e.0].unwrap_or_else(global);
-                (axes.map(|rot| Pose { rot, r: Vec3::zero() }), Rates::constant(0.0))
+                (number::both(axes, |rot| Pose { rot, r: Vec3::zero() }), Rates::constant(0.0))
             }
         };
         let (i, j) = (i.0.compose(m_i), j.0.compose(m_j));

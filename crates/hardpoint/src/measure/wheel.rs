@@ -11,7 +11,7 @@
 //! | `.d` of a number of [`TravellingWheel`], `carrier` | X', w and v | per unit of the driver q, (11) with `L_u = 1` |
 
 use crate::model::{TorqueReaction, Vehicle, VehicleEnd, WheelMeasure, WheelRequirement};
-use crate::number::{Dual, Real};
+use crate::number::{self, Dual, Real};
 use crate::space::{Twist, Vec3};
 
 /// A wheel somewhere on its way: z is up and the ground level.
@@ -135,8 +135,8 @@ impl<T: Real> WheelAt<T> {
         let planes = self.planes.expect("a measure that needs planes is of a wheel that has them");
         let contact = self.contact();
         // n_a a + n_z z = n . (P - C) of both,  solved by Cramer's rule
-        let [(a, z, d), (b, y, e)] = planes.map(|[n, p]| (n[axis], n.z, n.dot(p - contact)));
-        let lengths = planes.map(|[n, _]| n.norm());
+        let [(a, z, d), (b, y, e)] = number::both(planes, |[n, p]| (n[axis], n.z, n.dot(p - contact)));
+        let lengths = number::both(planes, |[n, _]| n.norm());
         Meet { aside: d * y - z * e, z: a * e - d * b, by: a * y - z * b, lengths: lengths[0] * lengths[1] }
     }
 
@@ -388,7 +388,7 @@ fn support<T: Real>(what: WheelMeasure, vehicle: &Vehicle) -> T {
 /// Global y of an axle's roll centre, and its height above the ground midway: where the lines meet that pass in front
 /// view through the contact points, perpendicular to their paths.
 pub(super) fn axle_roll_centre<T: Real>(wheels: [TravellingWheel<T>; 2]) -> (T, T) {
-    let [(p, a), (q, b)] = wheels.map(|side| {
+    let [(p, a), (q, b)] = number::both(wheels, |side| {
         let contact = side.wheel.contact();
         // Perpendicular to the path (C_y', C_z'): (-C_z', C_y')
         let along = [-contact.z.d, contact.y.d];

@@ -1,6 +1,7 @@
 //! The curve that a point follows: a smooth line in the x-y plane of a marker.
 
 use crate::law::{Law, LawError, SplineDegree, SplineEnds, Table};
+use crate::number;
 use crate::space::{Mat3, Pose, Real, Vec3};
 
 /// Newton for the nearest point from a near start takes a few steps; more than this and it is lost.
@@ -44,7 +45,7 @@ impl<T: Real> Contact<T> {
     /// The curve's place u.
     pub fn at(curve: &Curve, u: T) -> Self {
         let vector = |[x, y]: [f64; 2]| Vec3::new(x, y, 0.0).spread();
-        Self { u, c: curve.at(u.value()).map(vector) }
+        Self { u, c: number::each(&curve.at(u.value()), vector) }
     }
 
     /// The place next to p.

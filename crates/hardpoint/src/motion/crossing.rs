@@ -4,6 +4,7 @@
 //! solved with J is NaN.
 
 use crate::linalg::{hermite, segment_at};
+use crate::number;
 use crate::topology::BlockId;
 
 use super::mechanism::{AcceptedPosition, Mechanism, StepRejection};
@@ -52,14 +53,14 @@ impl Crossing {
     /// Moves the state of a mechanism to time t within the stretch; returns true if that is at the change point, where
     /// J is singular.
     pub fn stand(&self, mechanism: &mut Mechanism<'_>, t: f64) -> Result<bool, StepRejection> {
-        let [a, b] = self.ends.each_ref().map(|end| &end.position);
+        let [a, b] = number::both(self.ends.each_ref(), |end| &end.position);
         mechanism.drive(self.path, t)?;
         let h = b.time - a.time;
         let s = (t - a.time) / h;
         let Mechanism { topology, state, .. } = &mut *mechanism;
         state.contacts.copy_from_slice(&if s > 0.5 { b } else { a }.contacts);
         let channels = Channel::all(topology);
-        let moved = |k: usize| between(self.ends.each_ref().map(|end| end.values[k]), h, s);
+        let moved = |k: usize| between(number::both(self.ends.each_ref(), |end| end.values[k]), h, s);
         for (k, channel) in channels.iter().enumerate() {
             channel.put(moved(k)[0], state);
         }

@@ -12,7 +12,7 @@ use hardpoint_tape::{Number, Options, Program, record};
 use crate::design::DesignMap;
 use crate::linalg::Factors;
 use crate::model::{Driver, VariableId};
-use crate::number::record as recording;
+use crate::number::{self, record as recording};
 use crate::space::Vec3;
 
 use super::BodyState;
@@ -177,7 +177,7 @@ fn recorded(
         }
         // Inputs are the drivers' values, the kernel drives coordinates.
         let coordinate = |(driver, saved): (&Driver, &[f64; ORDERS])| {
-            saved.map(|x| driver.with_sense(Number::input(driver.with_sense(x))))
+            number::each(saved, |x| driver.with_sense(Number::input(driver.with_sense(x))))
         };
         let drivers: Vec<[Number; ORDERS]> =
             model.drivers.iter().zip(&one.saved.drivers).map(coordinate).collect();

@@ -19,7 +19,7 @@ use std::collections::HashMap;
 use std::rc::Rc;
 
 use crate::model::JointId;
-use crate::number::{Interval, Taylor};
+use crate::number::{Interval, Taylor, degrees};
 use crate::space::{Pose, Quat, Real};
 use crate::topology::{BlockId, Topology};
 
@@ -76,9 +76,9 @@ impl BoxFailure {
 }
 
 /// Bounds over a box of driver values, or at a point.
-pub(crate) struct BoxEnclosure<const N: usize> {
+pub(crate) struct BoxEnclosure {
     /// Per body: bounds of its pose, with its Taylor coefficients in the drivers.
-    pub poses: Vec<Pose<Taylor<Interval, N>>>,
+    pub poses: Vec<Pose<Taylor<Interval>>>,
     /// Per coordinate that begins a ball: its rotation at the middle, nearly.
     centres: Rc<Vec<Quat>>,
     /// Per coordinate: box in which exactly one position belongs to each point.
@@ -86,40 +86,38 @@ pub(crate) struct BoxEnclosure<const N: usize> {
     /// Per block: its residuals at the middle of its coordinates.
     residuals: Vec<Vec<Interval>>,
     /// Per coordinate.
-    coordinates: Vec<Taylor<Interval, N>>,
+    coordinates: Vec<Taylor<Interval>>,
 }
 
 /// One point of the drivers' range.
-pub(crate) struct BoxPoint<const N: usize> {
+pub(crate) struct BoxPoint {
     at: AcceptedPosition,
     /// Narrow bounds.
-    pub enclosure: BoxEnclosure<N>,
+    pub enclosure: BoxEnclosure,
 }
 
 /// Box of driver values with what is known at its middle.
-struct Wanted<'w, const N: usize> {
+struct Wanted<'w> {
     /// Coordinate of every driver of the mechanism.
-    drivers: Vec<Taylor<Interval, N>>,
+    drivers: Vec<Taylor<Interval>>,
     /// Distance of every variable from the middle.
     since: Vec<Interval>,
     at: &'w AcceptedPosition,
-    narrow: Option<&'w BoxEnclosure<N>>,
+    narrow: Option<&'w BoxEnclosure>,
+    /// Number of variables.
+    variables: usize,
 }
 
 /// Computes enclosures of one mechanism.
-struct BoxSolver<const N: usize>(BlockSolver<Taylor<Interval, N>>);
+struct BoxSolver(BlockSolver<Taylor<Interval>>);
 
-impl<const N: usize> BoxSolver<N> {
+impl BoxSolver {
     fn new(mechanism: &Mechanism<'_>) -> Self {
         let Mechanism { model, topology, parts, .. } = mechanism;
         Self(BlockSolver::new(model, topology, parts, Taylor::value))
     }
 
-    fn enclose(
-        &mut self,
-        topology: &Topology,
-        wanted: &Wanted<'_, N>,
-    ) -> Result<BoxEnclosure<N>, BoxFailure> {
+    fn enclose(&mut self, topology: &Topology, wanted: &Wanted<'_>) -> Result<BoxEnclosure, BoxFailure> {
         if let Some((c, _)) = topology.contacts().next() {
             return Err(BoxFailure::FollowsCurve { joint: topology[c].joint });
         }
@@ -145,7 +143,7 @@ impl<const N: usize> BoxSolver<N> {
         if let Some(narrow) = wanted.narrow {
             let since = &wanted.since;
             for (pose, at) in found.poses.iter_mut().zip(&narrow.poses) {
-                let narrowed = |x: Taylor<Interval, N>, at: &Taylor<Interval, N>| x.narrowed(at, since);
+                let narrowed = |x: Taylor<Interval>, at: &Taylor<Interval>| x.narrowed(at, since);
                 for (col, at) in
                     pose.rot.cols.iter_mut().chain([&mut pose.r]).zip(at.rot.cols.iter().chain([&at.r]))
                 {
@@ -162,8 +160,8 @@ impl<const N: usize> BoxSolver<N> {
         &mut self,
         topology: &Topology,
         b: BlockId,
-        wanted: &Wanted<'_, N>,
-        found: &mut BoxEnclosure<N>,
+        wanted: &Wanted<'_>,
+        found: &mut BoxEnclosure,
     ) -> Result<(), BoxFailure> {
         let unknowns = &topology[b].unknowns;
         let n = unknowns.len();
@@ -201,8 +199,7 @@ impl<const N: usize> BoxSolver<N> {
         for (k, c) in unknowns.iter().enumerate() {
             found.unique[c.0] = unique[k];
             // The derivatives are not known yet.
-            found.coordinates[c.0] = Taylor::constant(bounds[k]);
-            found.coordinates[c.0].coefficients_mut()[1..].fill(Interval::ENTIRE);
+            found.coordinates[c.0] = Taylor::of_value(bounds[k], wanted.variables, Interval::ENTIRE);
         }
         let mut inverse = None;
         for _ in 0..if wanted.narrow.is_some() { PASSES } else { 1 } {
@@ -215,7 +212,7 @@ impl<const N: usize> BoxSolver<N> {
             if !(step.norm() <= CONTRACTION) {
                 return Err(failed());
             }
-            self.derivatives(topology, b, &step, found);
+            self.derivatives(topology, b, &step, wanted.variables, found);
             if let Some(narrow) = wanted.narrow {
                 for c in unknowns {
                     let x = &mut found.coordinates[c.0];
@@ -223,7 +220,7 @@ impl<const N: usize> BoxSolver<N> {
                 }
             }
         }
-        let all: Vec<Taylor<Interval, N>> = unknowns.iter().map(|c| found.coordinates[c.0]).collect();
+        let all: Vec<Taylor<Interval>> = unknowns.iter().map(|c| found.coordinates[c.0]).collect();
         self.0.place(topology, b, &all, &found.centres);
         Ok(())
     }
@@ -235,12 +232,13 @@ impl<const N: usize> BoxSolver<N> {
         topology: &Topology,
         b: BlockId,
         step: &Contraction,
-        found: &mut BoxEnclosure<N>,
+        variables: usize,
+        found: &mut BoxEnclosure,
     ) {
         let unknowns = &topology[b].unknowns;
-        let degrees = Taylor::<Interval, N>::degrees();
+        let degrees = degrees(variables);
         let mut begin = 1;
-        while begin < N {
+        while begin < degrees.len() {
             let end = begin + degrees[begin..].iter().take_while(|d| **d == degrees[begin]).count();
             let lower = |k: usize| {
                 let mut x = found.coordinates[unknowns[k].0];
@@ -271,19 +269,19 @@ type Key = Vec<u64>;
 /// All positions of a mechanism over ranges of its drivers, with proven bounds.
 ///
 /// Drivers that are not variables remain in the design configuration.
-pub(crate) struct DriverBoxes<'m, const N: usize> {
+pub(crate) struct DriverBoxes<'m> {
     one: Stepper<'m>,
-    solver: BoxSolver<N>,
+    solver: BoxSolver,
     /// Per variable: index of its driver.
     drivers: Vec<usize>,
-    points: HashMap<Key, Result<Rc<BoxPoint<N>>, BoxFailure>>,
+    points: HashMap<Key, Result<Rc<BoxPoint>, BoxFailure>>,
     /// Per box that was proved: what is unique in it, with the rotations from which the coordinates of balls count.
     unique: HashMap<Key, (Rc<Vec<Quat>>, Vec<Interval>)>,
     /// Number of boxes, points not counted, of which bounds were computed.
     pub computed: usize,
 }
 
-impl<'m, const N: usize> DriverBoxes<'m, N> {
+impl<'m> DriverBoxes<'m> {
     /// From a mechanism in its design configuration.
     pub fn new(mut one: Stepper<'m>, drivers: Vec<usize>) -> Result<Self, Box<Stop>> {
         start_at_rest(&mut one, 0.0)?;
@@ -299,7 +297,7 @@ impl<'m, const N: usize> DriverBoxes<'m, N> {
     }
 
     /// Narrow bounds at a point.
-    pub fn point(&mut self, values: &[f64]) -> Result<Rc<BoxPoint<N>>, BoxFailure> {
+    pub fn point(&mut self, values: &[f64]) -> Result<Rc<BoxPoint>, BoxFailure> {
         let key = key(values);
         if let Some(known) = self.points.get(&key) {
             return known.clone();
@@ -309,19 +307,21 @@ impl<'m, const N: usize> DriverBoxes<'m, N> {
         found
     }
 
-    fn enclose_point(&mut self, values: &[f64], at: AcceptedPosition) -> Result<Rc<BoxPoint<N>>, BoxFailure> {
+    fn enclose_point(&mut self, values: &[f64], at: AcceptedPosition) -> Result<Rc<BoxPoint>, BoxFailure> {
         let boxed: Vec<Interval> = values.iter().map(|x| Interval::constant(*x)).collect();
-        let wanted = Wanted { drivers: self.drivers_over(&boxed), since: Vec::new(), at: &at, narrow: None };
+        let drivers = self.drivers_over(&boxed);
+        let wanted =
+            Wanted { drivers, since: Vec::new(), at: &at, narrow: None, variables: self.drivers.len() };
         let enclosure = self.solver.enclose(&self.one.mechanism.topology, &wanted)?;
         Ok(Rc::new(BoxPoint { at, enclosure }))
     }
 
     /// Coordinate of every driver over a box of driver values.
-    fn drivers_over(&self, boxed: &[Interval]) -> Vec<Taylor<Interval, N>> {
+    fn drivers_over(&self, boxed: &[Interval]) -> Vec<Taylor<Interval>> {
         let drivers = &self.one.mechanism.model.drivers;
         let mut coordinates = vec![Taylor::zero(); drivers.len()];
         for (k, (d, over)) in self.drivers.iter().zip(boxed).enumerate() {
-            coordinates[*d] = drivers[*d].with_sense(Taylor::variable(*over, k));
+            coordinates[*d] = drivers[*d].with_sense(Taylor::variable(*over, k, boxed.len()));
         }
         coordinates
     }
@@ -358,7 +358,7 @@ impl<'m, const N: usize> DriverBoxes<'m, N> {
     }
 
     /// Bounds over a box, and those at its middle.
-    pub fn over(&mut self, boxed: &[Interval]) -> Result<(BoxEnclosure<N>, Rc<BoxPoint<N>>), BoxFailure> {
+    pub fn over(&mut self, boxed: &[Interval]) -> Result<(BoxEnclosure, Rc<BoxPoint>), BoxFailure> {
         self.computed += 1;
         let values: Vec<f64> = boxed.iter().map(|over| over.middle()).collect();
         let middle = self.point(&values)?;
@@ -368,6 +368,7 @@ impl<'m, const N: usize> DriverBoxes<'m, N> {
             since,
             at: &middle.at,
             narrow: Some(&middle.enclosure),
+            variables: self.drivers.len(),
         };
         let found = self.solver.enclose(&self.one.mechanism.topology, &wanted)?;
         let unique = (found.centres.clone(), found.unique.clone());

@@ -1,5 +1,6 @@
 //! Third time derivatives: the equation of order 2 with the factors that the acceleration leaves.
 
+use crate::number;
 use crate::space::Vec3;
 
 use super::kinematics::State;
@@ -25,7 +26,7 @@ impl BodyJerk {
 
     /// `r... = B at r + 2 alpha x r. + omega x r..` (`docs/theory.md` (21)).
     fn of(state: &State<f64>, body: usize) -> Self {
-        let [v, a, b] = [0, 1, 2].map(|n| state.motion.twists[n][body]);
+        let [v, a, b] = number::each(&[0, 1, 2], |n| state.motion.twists[n][body]);
         let r = state.pose[body].r;
         // r.   = V at r,    r..  = A at r + omega x r.
         // The rate of r.., with B at r = B_v + B_w x r:

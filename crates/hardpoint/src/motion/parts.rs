@@ -3,6 +3,7 @@
 use crate::design::Geometry;
 use crate::law::Law;
 use crate::model::{BodyId, Curve, GROUND, Model};
+use crate::number;
 use crate::space::{Pose, Real};
 use crate::topology::{RowPlace, Topology};
 
@@ -86,7 +87,7 @@ impl PlanGeometry<f64> {
         PlanGeometry {
             parent_marker: poses(&self.parent_marker),
             child_from_marker: poses(&self.child_from_marker),
-            ends: self.ends.each_ref().map(|ends| poses(ends)),
+            ends: number::both(self.ends.each_ref(), |ends| poses(ends)),
             kept: self.kept.iter().map(|x| T::constant(*x)).collect(),
             curves: self.curves.clone(),
             laws: Vec::new(),

@@ -15,6 +15,7 @@
 //!
 //! The directions are the drivers, one by one: the distance does not depend on the speeds of the drivers.
 
+use crate::number;
 use crate::space::{Real, Twist, Wrench};
 use crate::topology::{BlockId, CoordinateId, Topology};
 
@@ -320,7 +321,7 @@ impl Workspace {
             unknowns.fold(0.0, |most: f64, &k| most.larger((c[k.0] * topology[k].per_unit).abs()))
         };
         // speeds[2] is 2 c2, hence the half
-        let [c0, c1, c2] = self.response.speeds.each_ref().map(|c| norm(c));
+        let [c0, c1, c2] = number::each(&self.response.speeds.each_ref(), |c| norm(c));
         (c1 / c0).larger((c2 * 0.5 / c0).sqrt())
     }
 
@@ -330,7 +331,7 @@ impl Workspace {
         let size = |k: CoordinateId| (self.response.speeds[0][k.0] * topology[k].per_unit).abs();
         let unknowns = topology[b].unknowns.iter().copied();
         let most = unknowns.max_by(|&j, &k| size(j).total_cmp(&size(k)))?;
-        let [c0, c1, c2] = self.response.speeds.each_ref().map(|c| c[most.0]);
+        let [c0, c1, c2] = number::each(&self.response.speeds.each_ref(), |c| c[most.0]);
         // a = s'/s = m / D, b = s''/s = m (m + 1) / D^2 (23):  a^2 / (b - a^2) = m,  D = m / a
         let (first, second) = (c1 / c0, c2 / c0);
         let power = first * first / (second - first * first);

@@ -10,6 +10,7 @@ use std::sync::Arc;
 use crate::joint::Freedom;
 use crate::linalg::Elimination;
 use crate::model::{Model, StartPlacement};
+use crate::number;
 use crate::space::{Pose, Quat, Vec3};
 use crate::topology::{CoordinateId, LinkId, SetBy, StartCoordinates, Topology};
 
@@ -187,7 +188,7 @@ fn is_same(model: &Model, a: &[StartPlacement], b: &[StartPlacement]) -> bool {
     a.len() == b.len()
         && a.iter().zip(b).all(|(a, b)| {
             let frame = model.bodies[a.body.0].frame;
-            let points = [Vec3::ZERO].into_iter().chain(Vec3::AXES.map(|axis| axis * size));
+            let points = [Vec3::ZERO].into_iter().chain(number::each(&Vec3::AXES, |axis| axis * size));
             let apart = |s: Vec3| {
                 let p = frame.point(s);
                 (a.displacement.point(p) - b.displacement.point(p)).norm()

@@ -6,6 +6,7 @@ use hardpoint_tape::{LANES, Lanes};
 
 use crate::blocks::{AlignedLanes, lanes_of};
 use crate::model::{BodyId, VariableId};
+use crate::number;
 use crate::topology::{CoordinateId, RowId, SetBy, Topology};
 
 use super::execution::ProgramMemory;
@@ -282,7 +283,8 @@ impl Tape {
     /// True if the guard trusts the speeds in all lanes.
     #[inline(always)]
     pub fn speeds_are_smooth<const N: usize>(&self, guard: &StepGuard<N>) -> bool {
-        let [apart, fastest] = [StepCheck::Apart, StepCheck::Fastest].map(|which| self.judged(which));
+        let [apart, fastest] =
+            number::both([StepCheck::Apart, StepCheck::Fastest], |which| self.judged(which));
         // NaN in any lane is rejected.
         all_within(apart, f64::MAX) && guard.speeds_are_smooth(largest(apart), largest(fastest))
     }

@@ -33,7 +33,7 @@ use std::rc::Rc;
 use crate::law::TimeJet;
 use crate::linalg::LARGEST_DENSE;
 use crate::model::{DriverId, JointId, Model};
-use crate::number::{Interval, Jet};
+use crate::number::{self, Interval, Jet};
 use crate::space::{Mat3, Pose, Quat, Real, Vec3};
 use crate::topology::{BlockId, CoordinateId, Topology};
 
@@ -566,7 +566,9 @@ impl<'m> ProvenMotion<'m> {
         };
         let poses =
             first.poses.iter().zip(&second.poses).zip(&middle.enclosure.poses).map(|((a, b), c)| Pose {
-                rot: Mat3 { cols: [0, 1, 2].map(|k| vector(a.rot.cols[k], b.rot.cols[k], c.rot.cols[k])) },
+                rot: Mat3 {
+                    cols: number::each(&[0, 1, 2], |k| vector(a.rot.cols[k], b.rot.cols[k], c.rot.cols[k])),
+                },
                 r: vector(a.r, b.r, c.r),
             });
         Ok(Rc::new(Slab { poses: poses.collect(), over, instants: [start, middle, end] }))

@@ -26,6 +26,7 @@ pub use function::Function;
 pub use interval::Interval;
 pub use jet::{Jet, Rates};
 pub use real::Real;
+pub(crate) use taylor::degrees;
 pub use taylor::{Exponents, Taylor};
 
 /// An array of at least one number, by index: `std::array::from_fn`, inlined everywhere.
@@ -45,4 +46,10 @@ pub(crate) fn each<T: Copy, U: Copy, const N: usize>(of: &[T; N], function: impl
         #[inline(always)]
         |k| function(of[k]),
     )
+}
+
+/// A function of both parts of a pair: `map`, inlined everywhere.
+#[inline(always)]
+pub(crate) fn both<T, U>([first, second]: [T; 2], mut function: impl FnMut(T) -> U) -> [U; 2] {
+    [function(first), function(second)]
 }

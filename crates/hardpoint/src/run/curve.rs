@@ -1,7 +1,7 @@
 //! Curves between solved times: polynomials with the values, rates and accelerations at both ends of each interval,
 //! with their extrema, crossings of a value, and error estimates.
 
-use crate::number::Real;
+use crate::number::{self, Real};
 
 /// A curve over time: at each time the first `orders` of value, rate and acceleration.
 pub(super) struct SampledCurve<'t, T> {
@@ -106,12 +106,12 @@ impl<T: Real> SampledCurve<'_, T> {
         if self.kinks.is_empty() || self.orders == 1 {
             return None;
         }
-        let ends = [k, k + 1].map(|end| self.values[end].map(|x| x.value()));
+        let ends = number::both([k, k + 1], |end| number::each(&self.values[end], |x| x.value()));
         if !ends.iter().all(|[y, ..]| y.is_finite()) {
             return None;
         }
         let h = self.times[k + 1] - self.times[k];
-        let far = |kink: f64| ends.map(|[y, ..]| y - kink);
+        let far = |kink: f64| number::both(ends, |[y, ..]| y - kink);
         let nearest = |kink: &&f64| far(**kink).map(f64::abs).into_iter().fold(f64::INFINITY, f64::min);
         let kink = *self.kinks.iter().min_by(|a, b| nearest(a).total_cmp(&nearest(b)))?;
         let is_near = |[y, rate, acceleration]: &[f64; 3]| {
@@ -138,16 +138,16 @@ impl<T: Real> SampledCurve<'_, T> {
     /// Numbers of orders at both ends of an interval that are known, without accelerations that the interval does not
     /// resolve: near a kink they are greater than all rates by far.
     fn resolved<U: Real>(&self, ends: &[[U; 3]; 2], h: f64) -> [usize; 2] {
-        let known = ends.each_ref().map(|end| self.known_of(end));
+        let known = number::both(ends.each_ref(), |end| self.known_of(end));
         if known != [3, 3] {
             return known;
         }
-        let [a, b] = ends.each_ref().map(|end| end.map(|x| x.value()));
+        let [a, b] = number::both(ends.each_ref(), |end| number::each(end, |x| x.value()));
         let rates = a[1].abs() + b[1].abs() + ((b[0] - a[0]) / h).abs();
         let is_resolved = |end: [f64; 3]| {
             h * end[2].abs() <= UNRESOLVED * rates || h * h * end[2].abs() <= ROUND_OFF * end[0].abs()
         };
-        [a, b].map(|end| if is_resolved(end) { 3 } else { 2 })
+        number::both([a, b], |end| if is_resolved(end) { 3 } else { 2 })
     }
 
     /// Interval of a time.
@@ -165,8 +165,8 @@ impl<T: Real> SampledCurve<'_, T> {
     pub(super) fn polynomial_of(&self, k: usize, orders: usize) -> Polynomial<T> {
         let length = self.times[k + 1] - self.times[k];
         let fold = self.fold(k);
-        let ends = [k, k + 1].map(|end| self.numbers(end, fold));
-        let known = self.resolved(&ends, length).map(|known| known.min(orders));
+        let ends = number::both([k, k + 1], |end| self.numbers(end, fold));
+        let known = number::both(self.resolved(&ends, length), |known| known.min(orders));
         Polynomial { from: self.times[k], length, c: Self::coefficients(&ends, length, known), fold }
     }
 
@@ -243,7 +243,7 @@ impl<T: Real> SampledCurve<'_, T> {
         }
         // A square turns where its root does.
         let Polynomial { from, length, c, .. } = self.polynomial(k);
-        let c = c.map(|c| c.value());
+        let c = number::each(&c, |c| c.value());
         let rate = [c[1], 2.0 * c[2], 3.0 * c[3], 4.0 * c[4], 5.0 * c[5]];
         roots(&rate).into_iter().map(|s| from + s * length).collect()
     }
@@ -256,7 +256,7 @@ impl<T: Real> SampledCurve<'_, T> {
         let most = |of: [f64; 6]| of.into_iter().fold(f64::NEG_INFINITY, |most, c| most.max(sign * c));
         match fold {
             None => most(coefficients),
-            Some(fold) => most(coefficients.map(|c| fold.root([c, 0.0])[0])),
+            Some(fold) => most(number::each(&coefficients, |c| fold.root([c, 0.0])[0])),
         }
     }
 
@@ -264,7 +264,7 @@ impl<T: Real> SampledCurve<'_, T> {
     /// or a gap. Near a kink those of the square of the distance from it.
     fn bernstein(&self, k: usize, fold: Option<Fold>) -> Option<[f64; 6]> {
         let h = self.times[k + 1] - self.times[k];
-        let plain = |k: usize| self.values[k].map(|x| x.value());
+        let plain = |k: usize| number::each(&self.values[k], |x| x.value());
         let [a, b] = match fold {
             None => [plain(k), plain(k + 1)],
             Some(fold) => [fold.square(plain(k)), fold.square(plain(k + 1))],
@@ -343,8 +343,8 @@ impl<T: Real> SampledCurve<'_, T> {
         let times = &self.times[..self.values.len()];
         let apart = |k: &usize| (times[*k] - t).abs();
         let middle = (1..times.len().checked_sub(1)?).min_by(|a, b| apart(a).total_cmp(&apart(b)))?;
-        let [t0, t1, t2] = [middle - 1, middle, middle + 1].map(|k| times[k]);
-        let [y0, y1, y2] = [middle - 1, middle, middle + 1].map(|k| self.values[k][0].value());
+        let [t0, t1, t2] = number::each(&[middle - 1, middle, middle + 1], |k| times[k]);
+        let [y0, y1, y2] = number::each(&[middle - 1, middle, middle + 1], |k| self.values[k][0].value());
         let [h0, h1] = [t1 - t0, t2 - t1];
         if h0.min(h1) < JUMP * h0.max(h1) {
             return None;
@@ -382,7 +382,10 @@ impl<T: Real> SampledCurve<'_, T> {
             times: &self.times[first..end],
             orders: self.orders,
             kinks: self.kinks,
-            values: self.values[first..end].iter().map(|numbers| numbers.map(|x| x.value())).collect(),
+            values: self.values[first..end]
+                .iter()
+                .map(|numbers| number::each(numbers, |x| x.value()))
+                .collect(),
         };
         Some(apart(&near, k - first, t)?[0].abs())
     }
@@ -406,7 +409,7 @@ struct RateSeries<T> {
 impl<T: Real> RateSeries<T> {
     /// Index of the first coefficient above this fraction of the largest, and above the round-off of the value.
     fn first_above(&self, part: f64) -> Option<usize> {
-        let sizes = self.rates.map(|rate| rate.value().abs());
+        let sizes = number::each(&self.rates, |rate| rate.value().abs());
         let largest = sizes.into_iter().fold(0.0, f64::max);
         let least = f64::max(part * largest, ROUND_OFF * self.value.abs());
         sizes.into_iter().position(|size| size > least)
@@ -516,7 +519,7 @@ impl WidePolynomial {
             at[count..count + known].fill(i);
             count += known;
         }
-        let (nodes, mut c) = (at.map(|i| y.times[i]), at.map(|i| numbers(i)[0]));
+        let (nodes, mut c) = (number::each(&at, |i| y.times[i]), number::each(&at, |i| numbers(i)[0]));
         for order in 1..count {
             for i in (order..count).rev() {
                 c[i] = if at[i - order] == at[i] {
@@ -581,7 +584,7 @@ pub(super) fn crossings<'c, T: Real>(
             is_near && x.error_at(k, t).is_none_or(|error| miss <= error.max(THERE * farthest))
         };
         let turns = x.turns(k).into_iter().map(|t| (t, turns_at(t)));
-        let ends = [k, k + 1].map(|end| (x.times[end], is_at(end)));
+        let ends = number::both([k, k + 1], |end| (x.times[end], is_at(end)));
         let places: Vec<_> = ends[..1].iter().copied().chain(turns).chain([ends[1]]).collect();
         let inner = places.windows(2).map(|pair| {
             let is_apart = pair.iter().all(|(_, is_there)| !is_there);

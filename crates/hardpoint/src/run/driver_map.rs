@@ -7,95 +7,66 @@ use crate::motion::driver_box::{BoxEnclosure, DriverBoxes};
 use crate::motion::parts::PlanGeometry;
 use crate::motion::stepper::Stepper;
 use crate::motion::{BoxFailure, Stop};
-use crate::number::{Exponents, Interval, Taylor};
+use crate::number::{Interval, Taylor};
 use crate::space::Real;
 
 use super::Analysis;
 use super::walk::PreparedDesign;
 
-/// Bounds of the partial derivatives of one output over a box of driver values, or at a point.
-pub trait OutputBounds {
-    /// Bounds of the partial derivative of this order in each driver: one of the orders up to 4, the others up to 1.
-    fn derivative(&self, order: Exponents) -> Interval;
-}
-
-impl<const N: usize> OutputBounds for Taylor<Interval, N> {
-    fn derivative(&self, order: Exponents) -> Interval {
-        Taylor::derivative(self, order)
-    }
-}
-
-/// Bounds of the partial derivatives of some outputs.
-pub type BoundsOfOutputs = Vec<Box<dyn OutputBounds>>;
+/// Bounds of some outputs over a box of driver values, or at a point, with their partial derivatives by the drivers.
+pub type BoundsOfOutputs = Vec<Taylor<Interval>>;
 
 /// Outputs of a mechanism as functions of its drivers, with proven bounds.
 ///
 /// The values of drivers count from the design configuration, m or rad; drivers that are not variables remain there.
-pub trait DriverMap {
+pub struct DriverMap<'a> {
+    model: &'a Model,
+    outputs: Vec<OutputSource>,
+    bodies: Vec<usize>,
+    boxes: DriverBoxes<'a>,
+    fixed: BodyFixed<Taylor<Interval>>,
+}
+
+impl DriverMap<'_> {
     /// Bounds over a box of driver values, on the branch of motion through the design configuration if all boxes whose
     /// union has the design configuration, or is [connected](Self::connect) with it, have been proved.
     ///
     /// # Errors
     /// A [`BoxFailure`]. A smaller box may succeed if [`BoxFailure::may_be_halved`].
-    fn over(&mut self, boxed: &[Interval]) -> Result<BoundsOfOutputs, BoxFailure>;
+    pub fn over(&mut self, boxed: &[Interval]) -> Result<BoundsOfOutputs, BoxFailure> {
+        let (enclosure, middle) = self.boxes.over(boxed)?;
+        let since: Vec<Interval> =
+            boxed.iter().map(|over| *over - Interval::constant(over.middle())).collect();
+        let (wide, narrow) = (self.outputs(&enclosure), self.outputs(&middle.enclosure));
+        Ok(wide.into_iter().zip(&narrow).map(|(wide, narrow)| wide.narrowed(narrow, &since)).collect())
+    }
 
     /// Bounds at a point, wide as round-off.
     ///
     /// # Errors
     /// A [`BoxFailure`].
-    fn at(&mut self, values: &[f64]) -> Result<BoundsOfOutputs, BoxFailure>;
+    pub fn at(&mut self, values: &[f64]) -> Result<BoundsOfOutputs, BoxFailure> {
+        let point = self.boxes.point(values)?;
+        Ok(self.outputs(&point.enclosure))
+    }
 
     /// Proves that the position at a point is that of a box which contains it.
     ///
     /// # Errors
     /// A [`BoxFailure`].
-    fn connect(&mut self, boxed: &[Interval], values: &[f64]) -> Result<(), BoxFailure>;
-
-    /// Number of boxes of which bounds were computed: the effort.
-    fn computed(&self) -> usize;
-}
-
-struct OutputMap<'a, const N: usize> {
-    model: &'a Model,
-    outputs: Vec<OutputSource>,
-    bodies: Vec<usize>,
-    boxes: DriverBoxes<'a, N>,
-    fixed: BodyFixed<Taylor<Interval, N>>,
-}
-
-impl<const N: usize> OutputMap<'_, N> {
-    fn outputs(&self, enclosure: &BoxEnclosure<N>) -> Vec<Taylor<Interval, N>> {
-        debug_assert!(self.bodies.iter().all(|b| *b < enclosure.poses.len()));
-        let instant = Instant::new(self.model, &self.fixed, &enclosure.poses);
-        self.outputs.iter().map(|output| instant.output(*output)).collect()
-    }
-}
-
-impl<const N: usize> DriverMap for OutputMap<'_, N> {
-    fn over(&mut self, boxed: &[Interval]) -> Result<BoundsOfOutputs, BoxFailure> {
-        let (enclosure, middle) = self.boxes.over(boxed)?;
-        let since: Vec<Interval> =
-            boxed.iter().map(|over| *over - Interval::constant(over.middle())).collect();
-        let (wide, narrow) = (self.outputs(&enclosure), self.outputs(&middle.enclosure));
-        let narrowed = wide.into_iter().zip(&narrow).map(|(wide, narrow)| {
-            let output: Box<dyn OutputBounds> = Box::new(wide.narrowed(narrow, &since));
-            output
-        });
-        Ok(narrowed.collect())
-    }
-
-    fn at(&mut self, values: &[f64]) -> Result<BoundsOfOutputs, BoxFailure> {
-        let point = self.boxes.point(values)?;
-        let all = self.outputs(&point.enclosure).into_iter();
-        Ok(all.map(|output| -> Box<dyn OutputBounds> { Box::new(output) }).collect())
-    }
-
-    fn connect(&mut self, boxed: &[Interval], values: &[f64]) -> Result<(), BoxFailure> {
+    pub fn connect(&mut self, boxed: &[Interval], values: &[f64]) -> Result<(), BoxFailure> {
         self.boxes.connect(boxed, values)
     }
 
-    fn computed(&self) -> usize {
+    /// Number of boxes of which bounds were computed: the effort.
+    pub fn computed(&self) -> usize {
         self.boxes.computed
+    }
+
+    fn outputs(&self, enclosure: &BoxEnclosure) -> BoundsOfOutputs {
+        debug_assert!(self.bodies.iter().all(|b| *b < enclosure.poses.len()));
+        let instant = Instant::new(self.model, &self.fixed, &enclosure.poses);
+        self.outputs.iter().map(|output| instant.output(*output)).collect()
     }
 }
 
@@ -128,31 +99,20 @@ impl Analysis<'_> {
         design: &[f64],
         drivers: &[DriverId],
         outputs: Vec<OutputSource>,
-    ) -> Option<Result<Box<dyn DriverMap + '_>, Box<Stop>>> {
+    ) -> Option<Result<DriverMap<'_>, Box<Stop>>> {
+        assert!((1..=3).contains(&drivers.len()), "a map of {} drivers", drivers.len());
         if self.openings().is_some() {
             return None;
         }
-        Some(match drivers.len() {
-            1 => self.map_of::<5>(design, drivers, outputs),
-            2 => self.map_of::<16>(design, drivers, outputs),
-            3 => self.map_of::<44>(design, drivers, outputs),
-            n => panic!("a map of {n} drivers"),
-        })
-    }
-
-    fn map_of<const N: usize>(
-        &self,
-        design: &[f64],
-        drivers: &[DriverId],
-        outputs: Vec<OutputSource>,
-    ) -> Result<Box<dyn DriverMap + '_>, Box<Stop>> {
         let (model, PreparedDesign { geometry, laws, .. }) = (self.solved_model(), self.design(design));
         let parts = PlanGeometry::same(model, self.topology(), &geometry, &laws);
         let one = Stepper::new(model, self.topology(), parts);
-        let boxes: DriverBoxes<'_, N> = DriverBoxes::new(one, drivers.iter().map(|d| d.0).collect())?;
+        let boxes = match DriverBoxes::new(one, drivers.iter().map(|d| d.0).collect()) {
+            Ok(boxes) => boxes,
+            Err(stop) => return Some(Err(stop)),
+        };
         let fixed: BodyFixed<f64> = self.design_map().fixed(&model.whole(design));
-        let bodies = bodies_asked_for(model);
         let fixed = fixed.map(Real::constant);
-        Ok(Box::new(OutputMap { model, outputs, bodies, boxes, fixed }))
+        Some(Ok(DriverMap { model, outputs, bodies: bodies_asked_for(model), boxes, fixed }))
     }
 }

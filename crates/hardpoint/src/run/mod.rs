@@ -32,7 +32,7 @@ pub use clearance::{
     ClearanceMinimum, Clearances, Contact, MinimumPlace, PairClearance, PairCurve, ShapeDistance,
     ShapeOnBodies,
 };
-pub use driver_map::{BoundsOfOutputs, DriverMap, OutputBounds};
+pub use driver_map::{BoundsOfOutputs, DriverMap};
 pub use driver_rates::DriverRates;
 pub use gradient::{GradientMethod, Gradients};
 pub use jerk::Jerks;

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use crate::constraint::Row;
 use crate::design::DesignVelocity;
 use crate::model::{CouplerTerm, JointId, Model};
+use crate::number;
 use crate::space::Twist;
 
 /// Admissibility of a design variable.
@@ -58,7 +59,7 @@ pub struct Condition {
 /// constraints (`docs/theory.md` (8), paper section 4: Dot-1, Dot-2, spherical, distance).
 pub fn conditions_at_design(model: &Model, field: &DesignVelocity) -> Vec<Condition> {
     let twists = |k: usize| {
-        [0, 1].map(|end| {
+        number::both([0, 1], |end| {
             let twist = field.twist_of(JointId(k), end).unwrap_or(Twist::ZERO);
             model.bodies[model.joints[k].bodies[end].0].frame.carry(twist)
         })

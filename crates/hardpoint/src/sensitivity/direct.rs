@@ -25,7 +25,7 @@ use crate::model::{DriverId, Model};
 use crate::motion::kinematics::State;
 use crate::motion::level::{Flow, carried, of_body};
 use crate::motion::mechanism::LOCKED;
-use crate::number::Dual;
+use crate::number::{self, Dual};
 use crate::space::{Real, Twist, Wrench};
 use crate::topology::{BlockId, ClosureId, LinkId, RowId, RowTerm, Topology};
 
@@ -220,7 +220,7 @@ impl<T: Real> PlanVelocity<T> {
                 }
             }
             // df(n)/db = sum over the parameters p of df(n)/dp dp/db, n = 0, 1, 2; a shift has no rates of its own.
-            *rates = sums.map(|sum| T::constant(sum));
+            *rates = number::each(&sums, |sum| T::constant(sum));
             for (_, rate) in self.shifts.iter().filter(|(d, _)| d == driver) {
                 rates[0] += *rate;
             }
@@ -338,7 +338,7 @@ impl<T: Real> PlanVelocity<Dual<T>> {
     pub fn law_curvature(&self, driver: DriverId, laws: [&Law; 2], t: f64) -> f64 {
         let of_driver = self.laws.iter().filter(|(d, ..)| *d == driver);
         let along = |(_, parameter, rate): &(DriverId, usize, Dual<T>)| {
-            let [ahead, behind] = laws.map(|law| law.derivative(*parameter, t).value());
+            let [ahead, behind] = number::both(laws, |law| law.derivative(*parameter, t).value());
             // d/dw (df/dp dp/du) = d(df/dp)/dw dp/du + df/dp d2p/du dw
             rate.v.value() * (ahead - behind) / (2.0 * LAW_STEP) + rate.d.value() * (ahead + behind) / 2.0
         };

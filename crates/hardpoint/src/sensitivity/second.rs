@@ -21,7 +21,7 @@ use crate::model::{DriverId, JointId, Model, VariableId};
 use crate::motion::kinematics::State;
 use crate::motion::level::turn_twists;
 use crate::motion::mechanism::Mechanism;
-use crate::number::{Dual, Real, record as recording};
+use crate::number::{self, Dual, Real, record as recording};
 use crate::space::{Pose, Twist, Vec3, Wrench};
 use crate::topology::{ClosureId, LinkId, RowId, SetBy, Topology};
 
@@ -157,7 +157,7 @@ fn along_direction<T: Real>(values: &[T], direction: &PairDirection) -> Vec<Dual
 
 /// Laws of all drivers at a small step along the direction of these values, forward and back.
 pub(crate) fn laws_beside(design_map: &DesignMap<'_>, values: &[Dual]) -> [Vec<Law>; 2] {
-    [LAW_STEP, -LAW_STEP].map(|h| {
+    number::both([LAW_STEP, -LAW_STEP], |h| {
         // b + h w and b - h w
         let moved: Vec<f64> = values.iter().map(|x| x.v + h * x.d).collect();
         design_map.laws(&moved)
@@ -224,7 +224,11 @@ impl Seconds {
     /// Second derivatives of a body's position by pair p.
     pub fn curvature(&self, state: &State<f64>, p: usize, body: usize) -> BodyCurvature {
         let pair = &self.pairs[p];
-        BodyCurvature::of(state.pose[body].r, pair.of.map(|k| self.firsts[k].w()[body]), pair.w[body])
+        BodyCurvature::of(
+            state.pose[body].r,
+            number::both(pair.of, |k| self.firsts[k].w()[body]),
+            pair.w[body],
+        )
     }
 }
 
@@ -335,7 +339,7 @@ impl<T: Real> Seconds<T> {
     /// the first, `d.d` along both.
     pub fn pose(&self, state: &State<T>, p: usize, body: usize) -> Pose<Dual<Dual<T>>> {
         let pair = &self.pairs[p];
-        let [u, w] = pair.of.map(|k| self.firsts[k].w()[body]);
+        let [u, w] = number::both(pair.of, |k| self.firsts[k].w()[body]);
         // X_w = W_w X,  X_u = W_u X,  X_uw = W_uw X + W_u X_w: the twist along u changes along w by W_uw        (16)
         state.pose[body].along(w).along(u.with_derivative(pair.w[body]))
     }
@@ -376,7 +380,7 @@ impl<T: Real> Pair<T> {
             closures: field.closures.iter().map(parts).collect(),
             z: Vec::with_capacity(field.links.len() + field.closures.len()),
             laws: laws.map_or_else(Vec::new, |laws| {
-                let of_driver = |d: &DriverId| (*d, [0, 1].map(|way| laws[way][d.0].clone()));
+                let of_driver = |d: &DriverId| (*d, number::both([0, 1], |way| laws[way][d.0].clone()));
                 drivers.iter().map(of_driver).collect()
             }),
             law_rates: drivers.iter().map(|d| (*d, 0.0)).collect(),

@@ -1,6 +1,6 @@
 //! Unit quaternions: the rotation of a spherical joint, stored without singularities.
 
-use crate::number::Real;
+use crate::number::{self, Real};
 
 use super::{Mat3, Vec3};
 
@@ -26,7 +26,7 @@ impl Quat<f64> {
     /// Normalised quaternion `[w, x, y, z]`; `None` if it is zero or not finite.
     pub fn from_array(q: [f64; 4]) -> Option<Self> {
         let n = q.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let [w, x, y, z] = q.map(|c| c / n);
+        let [w, x, y, z] = number::each(&q, |c| c / n);
         (n > 1e-12 && n.is_finite()).then_some(Self { w, v: Vec3::new(x, y, z) })
     }
 

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::Vec3;
+use crate::number;
 
 /// Triangles per leaf of the tree.
 const LEAF: usize = 2;
@@ -93,7 +94,7 @@ impl Surface {
 
     /// Corners of a triangle.
     pub fn corners(&self, triangle: usize) -> [Vec3; 3] {
-        self.triangles[triangle].map(|k| self.vertices[k as usize])
+        number::each(&self.triangles[triangle], |k| self.vertices[k as usize])
     }
 
     /// Visits the triangles that may be nearer to something than `least`, or than the nearest one so far. `apart` is
@@ -110,7 +111,7 @@ impl Surface {
             match node.halves {
                 None => (node.triangles[0]..node.triangles[1]).for_each(|t| least = least.min(each(t))),
                 Some(halves) => {
-                    let mut bounds = halves.map(|half| (bound(half), half));
+                    let mut bounds = number::both(halves, |half| (bound(half), half));
                     if bounds[0].0 < bounds[1].0 {
                         bounds.swap(0, 1);
                     }
@@ -145,10 +146,10 @@ impl Surface {
             // The larger one is divided.
             let divided = match (p.halves, q.halves) {
                 (Some(halves), _) if q.halves.is_none() || p.radius >= q.radius => {
-                    halves.map(|half| (half, b))
+                    number::both(halves, |half| (half, b))
                 }
-                (_, Some(halves)) => halves.map(|half| (a, half)),
-                (Some(halves), None) => halves.map(|half| (half, b)),
+                (_, Some(halves)) => number::both(halves, |half| (a, half)),
+                (Some(halves), None) => number::both(halves, |half| (half, b)),
                 (None, None) => {
                     for s in p.triangles[0]..p.triangles[1] {
                         for t in q.triangles[0]..q.triangles[1] {
@@ -158,7 +159,7 @@ impl Surface {
                     continue;
                 }
             };
-            let mut bounds = divided.map(|(a, b)| (bound(a, b), a, b));
+            let mut bounds = number::both(divided, |(a, b)| (bound(a, b), a, b));
             if bounds[0].0 < bounds[1].0 {
                 bounds.swap(0, 1);
             }
@@ -172,7 +173,7 @@ impl Surface {
             TrianglePart::Vertex(k) => self.vertex_normals.get(k as usize).copied(),
             TrianglePart::Edge([a, b]) => self.edge_normals.get(&[a.min(b), a.max(b)]).copied(),
             TrianglePart::Face([a, b, c]) => {
-                let [a, b, c] = [a, b, c].map(|k| self.vertices[k as usize]);
+                let [a, b, c] = number::each(&[a, b, c], |k| self.vertices[k as usize]);
                 Some((b - a).cross(c - a))
             }
         };
@@ -182,11 +183,11 @@ impl Surface {
     fn add_normals(&mut self) {
         self.vertex_normals = vec![Vec3::ZERO; self.vertices.len()];
         for corners in &self.triangles {
-            let [a, b, c] = corners.map(|k| self.vertices[k as usize]);
+            let [a, b, c] = number::each(corners, |k| self.vertices[k as usize]);
             let Some(normal) = (b - a).cross(c - a).unit() else { continue };
             for k in 0..3 {
                 let (here, next, other) = (corners[k], corners[(k + 1) % 3], corners[(k + 2) % 3]);
-                let [at, p, q] = [here, next, other].map(|k| self.vertices[k as usize]);
+                let [at, p, q] = number::each(&[here, next, other], |k| self.vertices[k as usize]);
                 let (u, v) = (p - at, q - at);
                 let angle = u.cross(v).norm().atan2(u.dot(v));
                 self.vertex_normals[here as usize] += normal * angle;
@@ -285,7 +286,7 @@ pub fn hull(points: &[Vec3]) -> Option<Vec<[u32; 3]>> {
     for i in 0..count {
         for j in i + 1..count {
             for k in j + 1..count {
-                let [a, b, c] = [i, j, k].map(|n| points[n as usize]);
+                let [a, b, c] = number::each(&[i, j, k], |n| points[n as usize]);
                 let Some(normal) = (b - a).cross(c - a).unit() else { continue };
                 let heights = || points.iter().map(|p| normal.dot(*p - a));
                 let (most, least) = (heights().fold(0.0, f64::max), heights().fold(0.0, f64::min));
