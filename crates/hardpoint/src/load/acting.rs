@@ -413,6 +413,9 @@ impl<T: Real> AppliedLoads<'_, T> {
     /// Sum of a wrench and the elastic wrenches on body j of a joint; the wrench itself in a model without equilibrium.
     pub fn elastic_wrench_of(&self, joint: JointId, rigid: Wrench<T>) -> Wrench<T> {
         let mut sum = rigid;
+        if self.model.equilibrium.is_none() {
+            return sum;
+        }
         for (e, element) in self.model.elements.iter().enumerate() {
             if let Some(Compliance::Joint(elastic)) = element.kind.force(self.model).map(|f| f.compliance)
                 && elastic.joint == joint
