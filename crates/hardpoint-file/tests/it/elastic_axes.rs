@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use hardpoint::joint::{self, JointType, Need};
-use hardpoint::model::Model;
+use hardpoint::model::{Model, VariableId};
 use hardpoint::space::{Mat3, Vec3};
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Solution};
@@ -80,6 +80,15 @@ fn on_elastic_joint(kind: &JointType, rot: Mat3, has_axis2: bool) -> String {
     let lead = if kind.has_lead() { ", lead = 0.02" } else { "" };
     // The second shaft of a joint whose `axis2` is on body j leaves the x axis open.
     let (y, about_y) = if kind.axis2 == Need::OnBodyJ { (1000, 100) } else { (4000, 150) };
+    // A screw moves along and about its axis by its lead, against a spring, and a constant-velocity joint has no twist.
+    let (along, spring) = match (kind.has_lead(), kind.name) {
+        (true, _) => (
+            "",
+            "coil = { type = \"torsion_spring\", joint = \"j\", coordinate = \"angle\", stiffness = 70 }",
+        ),
+        (false, "constant_velocity") => (", z = 2000", ""),
+        (false, _) => (", z = 2000, about_z = 70", ""),
+    };
     format!(
         r#"
 name = "turned"
@@ -94,7 +103,8 @@ j = {{ type = "{kind}", bodies = ["ground", "b"], at = "o"{axis}{axis2}{lead} }}
 [points]
 p = {{ body = "b", at = "p" }}
 [forces]
-soft = {{ type = "elastic_joint", joint = "j", x = 1000, y = {y}, z = 2000, about_x = 100, about_y = {about_y}, about_z = 70 }}
+soft = {{ type = "elastic_joint", joint = "j", x = 1000, y = {y}, about_x = 100, about_y = {about_y}{along} }}
+{spring}
 push = {{ type = "force", at = "p", force = 30, along = {push} }}
 twist = {{ type = "moment", body = "b", moment = 2, about = {twist} }}
 [equilibrium]
@@ -140,6 +150,173 @@ fn the_whole_model_turned_gives_the_same_answer() {
         tested += 1;
     }
     assert!(tested >= 10, "{tested}");
+}
+
+/// Directions of an elastic joint with a stiffness of each, N/mm and N m/deg.
+const STIFFNESSES: [&str; 6] = ["x = 900", "y = 700", "z = 500", "about_x = 2", "about_y = 4", "about_z = 3"];
+
+/// A body on ground by a joint of a type that is elastic in these directions, held where it moves freely.
+fn held_freely(kind: &JointType, directions: &[usize], equilibrium: bool) -> String {
+    let axis = match kind.axis {
+        Need::Unused => "",
+        Need::Required | Need::Optional | Need::OnBodyJ | Need::Orienting => ", axis = \"z\"",
+    };
+    let axis2 = match kind.axis2 {
+        Need::Unused => "",
+        Need::OnBodyJ => ", axis2 = \"z\"",
+        Need::Required | Need::Optional | Need::Orienting => ", axis2 = \"x\"",
+    };
+    let lead = if kind.has_lead() { ", lead = 10" } else { "" };
+    let mut drivers = String::new();
+    for c in kind.coordinates {
+        if !(kind.has_lead() && c.name == "displacement") {
+            drivers += &format!("d_{0} = {{ joint = \"j\", coordinate = \"{0}\", law = 0 }}\n", c.name);
+        }
+    }
+    let turns: &[&str] = match kind.name {
+        "spherical" | "inline" | "inplane" => &["x", "y", "z"],
+        "constant_velocity" => &["x", "y"],
+        _ => &[],
+    };
+    for about in turns {
+        drivers += &format!("t_{about} = {{ body = \"b\", about = \"{about}\", law = 0 }}\n");
+    }
+    let stiffnesses: Vec<&str> = directions.iter().map(|d| STIFFNESSES[*d]).collect();
+    let mut measures = String::new();
+    for of in ["x", "y", "z"] {
+        for along in ["x", "y", "z"] {
+            measures += &format!(
+                "c_{of}{along} = {{ type = \"compliance\", of = \"p.{of}\", at = \"p\", along = \"{along}\" }}\n"
+            );
+        }
+    }
+    format!(
+        r#"
+name = "held"
+units = {{ length = "mm", angle = "deg" }}
+hardpoints = {{ o = [0, 0, 0], p = [30, 40, 50] }}
+bodies = {{ b = {{}} }}
+joints.j = {{ type = "{kind}", bodies = ["ground", "b"], at = "o"{axis}{axis2}{lead} }}
+points.p = {{ body = "b", at = "p" }}
+design.p = {{ move = "p", along = "xyz" }}
+time = {{ at = [0] }}
+[drivers]
+{drivers}[forces]
+soft = {{ type = "elastic_joint", joint = "j", {stiffnesses} }}
+[measures]
+{measures}{equilibrium}"#,
+        kind = kind.name,
+        stiffnesses = stiffnesses.join(", "),
+        equilibrium = if equilibrium { "[equilibrium]\n" } else { "" },
+    )
+}
+
+#[test]
+fn compliances_of_every_elastic_type_are_those_at_equilibrium() {
+    let (mut compared, mut refused) = (0, 0);
+    for kind in elastic_types().filter(|kind| kind.name != "fixed") {
+        let even = kind.axis2 == Need::OnBodyJ;
+        for directions in [&[0][..], &[1], &[2], &[3], &[4], &[5], &[0, 1, 2, 3, 4, 5]] {
+            let at_equilibrium = held_freely(kind, directions, true);
+            // The x axis of a joint whose second axis is on body j is open, as for any stiffness that differs about it.
+            if even && directions.iter().any(|d| !matches!(d, 2 | 5)) {
+                continue;
+            }
+            let text = faults(&at_equilibrium);
+            if text.contains("HP0261") {
+                assert!(kind.has_lead() || kind.name == "constant_velocity", "{}: {text}", kind.name);
+                refused += 1;
+                continue;
+            }
+            let [first, second] =
+                [held_freely(kind, directions, false), at_equilibrium].map(|text| solved(&text));
+            for m in 0..9 {
+                let of = |solution: &Solution, k: usize| match k {
+                    0 => solution.measured.value(0, m)[0],
+                    k => solution.measured.derivative(0, VariableId(k - 1), m, 0),
+                };
+                for k in 0..4 {
+                    let (a, b) = (of(&first, k), of(&second, k));
+                    // Compliances are below 1e-3 m/N, and 1e-2 1/N per metre.
+                    assert!((a - b).abs() <= SAME * 1e-3, "{} {directions:?} {m} {k}: {a} {b}", kind.name);
+                }
+            }
+            compared += 1;
+        }
+    }
+    assert!(compared > 60 && refused == 4, "{compared} {refused}");
+}
+
+/// With the arm's driver released.
+const AT_EQUILIBRIUM: &str = "[equilibrium]\nreleased = [\"bump\"]\n";
+
+#[test]
+fn a_stiffness_against_the_motion_of_a_joint_is_that_of_a_spring() {
+    let text = |forces: &str, equilibrium: &str| {
+        let released = if equilibrium.is_empty() { ", released = \"bump\"" } else { "" };
+        format!(
+            r#"
+name = "arm"
+units = {{ length = "mm", angle = "deg" }}
+hardpoints = {{ A = [0, 0, 0], P = [0, 400, 0] }}
+bodies = {{ arm = {{}} }}
+joints.pivot = {{ type = "revolute", bodies = ["ground", "arm"], at = "A", axis = "x", axis2 = "y" }}
+drivers.bump = {{ point = "wheel", along = "z", law = 0 }}
+points.wheel = {{ body = "arm", at = "P" }}
+design.P = {{ move = "P", along = "xyz" }}
+time = {{ at = [0] }}
+measures.rate = {{ type = "compliance", of = "wheel.z", at = "wheel", along = "z"{released} }}
+[forces]
+coil = {{ type = "spring", from = {{ body = "ground", at = [0, 400, 300] }}, to = {{ body = "arm", at = "P" }}, stiffness = 5 }}
+{forces}
+{equilibrium}"#
+        )
+    };
+    let rate = |forces: &str, equilibrium: &str| {
+        let solution = solved(&text(forces, equilibrium));
+        std::array::from_fn(|k| match k {
+            0 => value(&solution, 0, "rate"),
+            k => solution.measured.derivative(
+                0,
+                VariableId(k - 1),
+                solution.measured.index("rate").unwrap(),
+                0,
+            ),
+        })
+    };
+    let same = |a: [f64; 4], b: [f64; 4], what: &str| {
+        for (a, b) in a.into_iter().zip(b) {
+            assert!((a - b).abs() <= 1e-9 * (1e-4 + a.abs()), "{what}: {a} {b}");
+        }
+    };
+    let bush =
+        "bush = { type = \"elastic_joint\", joint = \"pivot\", x = 3000, y = 3000, z = 3000, about_z = 20 }";
+    let found = rate(bush, "");
+    // The arm turns against the coil and 20 N m/deg on 400 mm, in series with 3000 N/mm.
+    let torsional = 20.0 * 180.0 / std::f64::consts::PI * 1e3 / (400.0 * 400.0);
+    let expected = 1e-3 / (5.0 + 1.0 / (1.0 / 3000.0 + 1.0 / torsional));
+    assert!((found[0] - expected).abs() < 1e-9 * expected, "{found:?} {expected}");
+    same(found, rate(bush, AT_EQUILIBRIUM), "equilibrium");
+    let spring = bush.replace(", about_z = 20", "")
+        + "\ncoil2 = { type = \"torsion_spring\", joint = \"pivot\", stiffness = 20 }";
+    same(found, rate(&spring, ""), "spring");
+    // An entry beside the diagonal, between turning and opening, N/rad.
+    let coupled = bush.replace(
+        ", about_z = 20",
+        ", about_z = 20, matrix = [[0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0]]",
+    );
+    same(found, rate(&coupled, ""), "zeros");
+    let entry = |v: &str| {
+        let row = |k: usize| {
+            let entry = |c: usize| if k.min(c) == 1 && k.max(c) == 5 { v } else { "0" };
+            format!("[{}]", (0..6).map(entry).collect::<Vec<_>>().join(", "))
+        };
+        let rows: Vec<String> = (0..6).map(row).collect();
+        bush.replace("about_z = 20", &format!("about_z = 20, matrix = [{}]", rows.join(", ")))
+    };
+    let coupled = rate(&entry("1000"), "");
+    assert!((coupled[0] - found[0]).abs() > 1e-3 * found[0], "{coupled:?}");
+    same(coupled, rate(&entry("1000"), AT_EQUILIBRIUM), "coupled");
 }
 
 #[test]

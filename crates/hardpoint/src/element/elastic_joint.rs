@@ -1,7 +1,7 @@
 //! Joint that gives along its own axes.
 
 use crate::draft::{CheckElement, ElementCheck};
-use crate::joint::{DIRECTION_NAMES, DIRECTIONS, Need, free_directions};
+use crate::joint::{DIRECTION_NAMES, DIRECTIONS, Need, free_directions, sprung_directions};
 use crate::linalg::semidefinite::is_definite;
 use crate::load::{AppliedLoads, ForceFormula};
 use crate::model::element::{ActsOn, Compliance, ElasticJoint, ForceProperties, Properties};
@@ -163,5 +163,28 @@ impl ForceFormula for ElasticJoint {
             .map_or(T::zero(), |opening| at.elastic_wrench(&opening, &self.law()).f.norm())
     }
 
-    fn deflections<T: Real>(&self, _: &AppliedLoads<'_, T>, _: ElementId, _: impl FnMut(T, T)) {}
+    /// Those of the directions in which the joint moves by itself; in the others it opens (`load/compliance.rs`).
+    fn deflections<T: Real>(&self, at: &AppliedLoads<'_, T>, e: ElementId, mut each: impl FnMut(T, T)) {
+        let (law, sprung) = (self.law(), sprung_directions(at.model.joints[self.joint.0].kind));
+        let gives = law.gives();
+        if !(0..DIRECTIONS).any(|k| gives[k] && sprung[k]) {
+            return;
+        }
+        let coordinates = at.motion_of(e, self.joint).coordinates;
+        for k in (0..DIRECTIONS).filter(|k| sprung[*k]) {
+            let [_, slope] = at.elastic_resistance(coordinates[k], &law.directions[k]);
+            each(coordinates[k], slope);
+        }
+        for entry in law.coupled.iter().flat_map(|matrix| &matrix.entries) {
+            let (stiffness, [a, b]) = (at.number(entry.value), [entry.row, entry.column]);
+            if a == b && sprung[a] {
+                each(coordinates[a], stiffness);
+            } else if a != b && (sprung[a] || sprung[b]) {
+                // 2 k a b = k/2 (a + b)^2 - k/2 (a - b)^2
+                let half = stiffness * 0.5;
+                each(coordinates[a] + coordinates[b], half);
+                each(coordinates[a] - coordinates[b], -half);
+            }
+        }
+    }
 }

@@ -39,6 +39,21 @@ pub(crate) fn free_directions(kind: &JointType) -> [bool; DIRECTIONS] {
     free
 }
 
+/// Free directions in which the joint moves only together with others: along and about the axis of a screw, about that
+/// of a constant-velocity joint. A stiffness there is one of the lead, or of the shaft, not against the joint's motion.
+pub(crate) fn tied_directions(kind: &JointType) -> [bool; DIRECTIONS] {
+    let mut tied = [false; DIRECTIONS];
+    tied[2] = kind.has_lead();
+    tied[5] = kind.has_lead() || kind.tree_rows.contains(&Row::ConstantVelocity);
+    tied
+}
+
+/// Directions in which the joint moves by itself, so that a stiffness there is a spring against its motion.
+pub(crate) fn sprung_directions(kind: &JointType) -> [bool; DIRECTIONS] {
+    let (free, tied) = (free_directions(kind), tied_directions(kind));
+    std::array::from_fn(|k| free[k] && !tied[k])
+}
+
 /// Returns a joint type that gives in these directions, which are not free; `None` for a type without freedoms of its
 /// own, such as a rod.
 pub(crate) fn elastic(rigid: &'static JointType, directions: [bool; DIRECTIONS]) -> Option<ElasticType> {

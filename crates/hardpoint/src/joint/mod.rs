@@ -56,7 +56,9 @@ mod universal;
 use crate::constraint::Row;
 pub(crate) use course::COURSE;
 pub use elastic::DIRECTION_NAMES;
-pub(crate) use elastic::{DIRECTIONS, elastic, free_directions, with_turns};
+pub(crate) use elastic::{
+    DIRECTIONS, elastic, free_directions, sprung_directions, tied_directions, with_turns,
+};
 pub(crate) use pad::pad;
 
 /// Exports and lists the types.

@@ -300,6 +300,11 @@ impl<T: Real> AppliedLoads<'_, T> {
     /// joints are rigid.
     pub fn opening(&self, e: ElementId, joint: JointId) -> Option<Opening<T>> {
         self.model.equilibrium.as_ref()?;
+        Some(self.motion_of(e, joint))
+    }
+
+    /// Motion of a joint in all of its directions, as the opening of an element.
+    pub fn motion_of(&self, e: ElementId, joint: JointId) -> Opening<T> {
         let [m_i, m_j] = self.geometry.elastic_markers(self.model, joint);
         let [i, j] = each(&self.model.joints[joint.0].bodies, |b| self.bodies[b.0].pose);
         let (i, j) = (i.compose(m_i), j.compose(m_j));
@@ -307,7 +312,7 @@ impl<T: Real> AppliedLoads<'_, T> {
             true => Opening::of_cross,
             false => Opening::between,
         };
-        Some(opening(&i, &j, self.near[e.0]))
+        opening(&i, &j, self.near[e.0])
     }
 
     /// Opening of an element between two points: of its markers there, which have the same axes in the design

@@ -6,7 +6,7 @@
 //! mechanism.
 
 use crate::design::{BodyFixed, DesignMap, Geometry};
-use crate::joint::free_directions;
+use crate::joint::sprung_directions;
 use crate::linalg::Elimination;
 use crate::measure::{Instant, StepValues, bodies_asked_for};
 use crate::model::element::Compliance;
@@ -245,13 +245,12 @@ fn elastic_directions(model: &Model) -> (Vec<Deflection>, Vec<PairDirection>) {
             Some(Compliance::Joint(elastic)) => (elastic.joint, elastic.law()),
             Some(Compliance::None | Compliance::Element) | None => continue,
         };
-        // The pins of a cross turn with its angles: they take up themselves what turns about them.
-        let kind = model.joints[joint.0].kind;
-        let free = if kind.is_cross() { free_directions(kind) } else { Default::default() };
+        // Where the joint moves by itself it does not open: its stiffness there is that of a spring.
+        let sprung = sprung_directions(model.joints[joint.0].kind);
         for (k, axis) in Vec3::AXES.into_iter().enumerate() {
             let twists = [Twist { w: Vec3::ZERO, v: axis }, Twist { w: axis, v: Vec3::ZERO }];
             for (direction, twist) in [k, 3 + k].into_iter().zip(twists) {
-                if !free[direction] && law.stiffnesses(direction, direction).next().is_some() {
+                if !sprung[direction] && law.stiffnesses(direction, direction).next().is_some() {
                     ways.push(Deflection::Opening(ElementId(e), direction));
                     directions.push(PairDirection::Opening(joint, twist));
                 }

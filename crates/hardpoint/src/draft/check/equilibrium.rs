@@ -1,6 +1,7 @@
 //! Checks of the equilibrium: its drivers, and what it cannot have.
 
 use crate::draft::Section;
+use crate::joint::{DIRECTION_NAMES, DIRECTIONS, tied_directions};
 use crate::model::element::Compliance;
 use crate::model::{DriverId, Equilibrium, Joint, MeasureKind};
 
@@ -50,6 +51,25 @@ impl Checker<'_> {
                 let note =
                     format!("joints of type `{}` have no axes along which they open under load", kind.name);
                 self.fault("HP0261", here.key("joint"), message).note(note).help(help);
+                continue;
+            }
+            let (tied, gives) = (tied_directions(kind), elastic.law().gives());
+            if let Some(k) = (0..DIRECTIONS).find(|k| tied[*k] && gives[*k]) {
+                let (direction, screw) = (DIRECTION_NAMES[k], kind.has_lead());
+                let message = format!("joint `{joint}` of `{name}` cannot open in direction `{direction}`");
+                let note = match screw {
+                    true => "a screw moves along and about its axis by its lead",
+                    false => "both shafts of a constant-velocity joint turn alike",
+                };
+                let help = match screw {
+                    true => {
+                        "hold its nut or its spindle by an elastic joint of another type; for a spring against its motion add a force of `type = \"torsion_spring\"`"
+                    }
+                    false => {
+                        "divide one of its shafts by a `fixed` joint, and give the stiffness to that joint"
+                    }
+                };
+                self.fault("HP0261", here.key(direction), message).note(note).help(help);
             }
         }
         for index in 0..draft.measures.len() {
