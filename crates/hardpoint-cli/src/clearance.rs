@@ -1,6 +1,7 @@
 //! `hardpoint clearance`.
 
 use hardpoint::model::Grid;
+use hardpoint::motion::StopKind;
 use hardpoint_file::ModelFile;
 use hardpoint_report::clearance::{self, ClearanceFact, GridClearanceFact};
 use hardpoint_report::diagnose;
@@ -35,6 +36,7 @@ fn clearance_over(
     has_clearances(session, file)?;
     // The mechanism can be driven, or the reasons are given.
     session.plan(file, options.common.formulation())?;
+    session.patient(true);
     let found = {
         let _working = session.working("locating least distances");
         let more = || !session.interrupted();
@@ -69,20 +71,23 @@ fn clearance_in(
     case: Option<&str>,
 ) -> Result<Outcome, Outcome> {
     has_clearances(session, file)?;
-    let analysis = session.plan(file, options.common.formulation())?;
+    let analysis = session.until_interrupted(session.plan(file, options.common.formulation())?);
     let folder = options.output.as_ref().map(|path| Folder::open(&of_case(path, case)));
     let folder = folder.transpose().map_err(|e| session.not_written(&e))?;
+    session.patient(true);
     let found = {
         let _working = session.working("locating least distances");
         analysis.clearances(&[])
     };
-    let mut prover = if options.no_proof { None } else { analysis.clearance_prover(&[]) };
+    let is_cut = found.stop.as_ref().is_some_and(|stop| stop.kind == StopKind::Interrupted);
+    let mut prover = if options.no_proof || is_cut { None } else { analysis.clearance_prover(&[]) };
     let facts = {
         let _working = session.working("proving that nothing is nearer between output times");
         ClearanceFact::proved(&file.model, file.units, &found, &mut |pair| {
             clearance::proof(&file.model, file.units, prover.as_mut()?, pair)
         })
     };
+    let is_interrupted = session.interrupted();
     let mut written = None;
     if let Some(mut folder) = folder {
         written = Some(folder.path_of("clearances.csv"));
@@ -96,11 +101,18 @@ fn clearance_in(
         diagnose::stop(file, stop, solved, None)
     });
     if options.common.json {
-        session.print_json(&json!({ "name": file.model.name, "pairs": facts, "diagnostics": stopped }));
+        session.print_json(&json!({
+            "name": file.model.name, "pairs": facts, "interrupted": is_interrupted, "diagnostics": stopped,
+        }));
     } else {
         text::print(&format!("{}\n", text::bold(&file.model.name)));
         ClearanceFact::sentences(&facts).iter().for_each(|line| text::print(&format!("{line}\n")));
-        if let Some(end) = found.stop.as_ref().and_then(|stop| stop.last_time) {
+        if is_cut {
+            text::print(
+                "Interrupted: minima and contacts that were not located yet are at times that were solved, \
+                 without derivatives.\n",
+            );
+        } else if let Some(end) = found.stop.as_ref().and_then(|stop| stop.last_time) {
             text::print(&format!("All of this is until the motion ends, at t = {} s.\n", number(end)));
         }
         ClearanceFact::table(&facts).iter().for_each(|table| text::print(&text::section(table)));
@@ -108,11 +120,12 @@ fn clearance_in(
     }
     let kept = facts.iter().all(|fact| fact.kept);
     let outcome = if kept { Outcome::Done } else { Outcome::FellShort };
-    Ok(match stopped {
+    let outcome = match stopped {
         Some(stop) => {
             session.tell(file, &[stop]);
             outcome.and(Outcome::Stopped)
         }
         None => outcome,
-    })
+    };
+    Ok(if is_interrupted { Outcome::Interrupted } else { outcome })
 }

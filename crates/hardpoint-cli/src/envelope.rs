@@ -45,6 +45,7 @@ fn envelope_of(session: &Session, options: &args::Envelope) -> Result<Outcome, O
     let request = Request::of(&file.model, overrides).map_err(|e| session.refused(&file, &e))?;
     // The mechanism can be driven, or the reasons are given.
     session.plan(&file, options.common.formulation())?;
+    session.patient(true);
     let found = {
         let _working = session.working("computing the envelope");
         let more = || !session.interrupted();
@@ -63,6 +64,7 @@ fn envelope_of(session: &Session, options: &args::Envelope) -> Result<Outcome, O
         text::print(&format!("\nwritten: {}\n", to.display()));
     }
     Ok(match (&found.stops[..], found.is_within_error) {
+        (_, _) if found.interrupted => Outcome::Interrupted,
         ([], true) => Outcome::Done,
         ([], false) => Outcome::FellShort,
         (_, _) => Outcome::Stopped,

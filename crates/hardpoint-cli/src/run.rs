@@ -359,7 +359,7 @@ fn run_in(
         }
         if !file.model.clearances.is_empty() && !stopped_before {
             let _working = session.working("least distances of shapes");
-            let found = analysis.clearances(&[]);
+            let found = session.until_interrupted(analysis.clone()).clearances(&[]);
             let (model, units) = (&file.model, file.units);
             let written = folder.write(CLEARANCES, |out| Ok(clearance::write(model, units, &found, out)?));
             written.map_err(|e| session.not_written(&e))?;

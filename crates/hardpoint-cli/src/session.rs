@@ -454,6 +454,11 @@ impl Session {
         })
     }
 
+    /// Analysis whose runs end at their next output time once the user asks to stop.
+    pub fn until_interrupted<'m>(&self, analysis: Analysis<'m>) -> Analysis<'m> {
+        analysis.ended_by(Arc::clone(&self.interrupted))
+    }
+
     /// Reports why the mechanism cannot be driven.
     pub fn cannot_be_driven(&self, file: &ModelFile, fault: &TopologyError) -> Outcome {
         self.fail(file, &[diagnose::topology_fault(file, fault)]);

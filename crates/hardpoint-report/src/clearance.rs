@@ -158,6 +158,7 @@ fn reason_in_words(model: &Model, reason: ProofFailure) -> String {
         ProofFailure::Mesh { shape } => {
             format!("`{}` is a mesh, for which no bounds are computed", model.shapes[shape.0].name)
         }
+        ProofFailure::Interrupted => "the proof was interrupted".into(),
         ProofFailure::Motion(failure) => {
             format!("the motion has no bounds there: {}", motion_in_words(model, failure))
         }

@@ -99,6 +99,11 @@ fn ended(file: &ModelFile, stop: &Stop, who: &str, left: String) -> Diagnostic {
     let place = match stop.kind {
         StopKind::Locked { joint, .. } => Some((Section::Joints, joint.0)),
         StopKind::LawNotFinite { driver } => Some((Section::Drivers, driver.0)),
+        StopKind::LoadNotFinite { force } => {
+            // The elements are the masses, then the forces.
+            let masses = model.elements.iter().filter(|e| e.kind.has_mass()).count();
+            Some((Section::Forces, force.0 - masses))
+        }
         StopKind::FormulaNotFinite { formula } => match model.formulas[formula].of {
             Target::Parameter(p) => Some((Section::Parameters, p.0)),
             Target::Coordinate(h, _) if model.hardpoints[h.0].unnamed => {

@@ -45,6 +45,8 @@ record! {
     between_poses: f64 = in_units(1, found.between_poses);
     /// True if both are within the permitted error.
     within_error: bool = found.is_within_error;
+    /// True if the user ended the study before the permitted error was reached.
+    interrupted: bool = found.interrupted;
     /// Number of positions of the shape.
     poses: usize = found.poses;
     /// Number of triangles.
@@ -88,10 +90,12 @@ impl EnvelopeFact {
             lines.push(format!("  with {} added around the shape", length(self.margin)));
         }
         if !self.within_error {
-            lines.push(format!(
-                "  the permitted error of {} is NOT reached with the largest numbers of triangles and positions",
-                length(self.permitted)
-            ));
+            let why = if self.interrupted {
+                ": interrupted"
+            } else {
+                " with the largest numbers of triangles and positions"
+            };
+            lines.push(format!("  the permitted error of {} is NOT reached{why}", length(self.permitted)));
         }
         lines.extend(self.stops.iter().map(|stop| format!("  ended early: {stop}")));
         lines

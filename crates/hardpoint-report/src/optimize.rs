@@ -638,13 +638,13 @@ impl OptimizeFacts {
         };
         let variables = Table::of(
             "Design",
-            "Start, optimised value and bounds are values of the number that the variable changes; where it changes several, they are \
-             changes of the design configuration. Work is a variable's share of what was gained, along the way.",
+            "Nominal, optimised value and bounds are values of the number that the variable changes; where it changes several, they are \
+             changes of the design configuration. Work is a variable's share of what was gained, along the path of the best search.",
             &[
                 ("variable", &|v: &&SearchedVariable| v.name.clone()),
-                ("start", &|v| with_unit(v.value(v.start), &v.unit)),
+                ("nominal", &|v| with_unit(v.value(0.0), &v.unit)),
                 ("optimised", &|v| with_unit(v.value(v.end), &v.unit)),
-                ("change", &|v| signed(v.end - v.start, &v.unit)),
+                ("change", &|v| signed(v.end, &v.unit)),
                 ("bounds", &|v| {
                     format!("{} to {}", number(v.value(v.bounds[0])), number(v.value(v.bounds[1])))
                 }),

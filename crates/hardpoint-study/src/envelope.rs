@@ -72,7 +72,7 @@ pub enum EnvelopeError {
     NotReached(Option<Box<Stop>>),
     /// No cell of the smallest size is inside the shape.
     TooThin(RequestError),
-    /// The caller ended the study.
+    /// The caller ended the study before there was a surface.
     Interrupted,
 }
 
@@ -95,6 +95,8 @@ pub struct Envelope {
     pub between_poses: f64,
     /// False if the permitted error was not reached with the maximum numbers of poses and cells.
     pub is_within_error: bool,
+    /// True if the caller ended the study: the surface is the last one that was finished.
+    pub interrupted: bool,
     /// Stops of motions that ended early: the envelope is that of the positions that were reached.
     pub stops: Vec<EnvelopeStop>,
     /// Cost of the study.
@@ -173,7 +175,7 @@ impl Union<'_> {
 }
 
 /// Computes the envelope of a shape at the design with variable k at `design[k]`. `more` is called regularly; if it
-/// returns false, the study ends.
+/// returns false, the study ends with the last surface.
 ///
 /// # Errors
 /// An [`EnvelopeError`].
@@ -241,9 +243,16 @@ pub fn envelope(
     let rounding = request.margin + found.swept.round();
     let (mut between, mut enough, mut made) = (TRAVEL * radius, false, None);
     for level in 0.. {
-        motions = motions.iter().map(|motion| motion.finer(level)).collect();
-        let finer = poses_of(&mut motions, &mut cost)?;
-        let Some(surface) = of(&finer.swept, first_cell)? else {
+        let mut finer_motions: Vec<Positions<'_>> =
+            motions.iter().map(|motion| motion.finer(level)).collect();
+        let finer = poses_of(&mut finer_motions, &mut cost);
+        let surface = finer.and_then(|finer| Ok((of(&finer.swept, first_cell)?, finer)));
+        if made.is_some() && matches!(surface, Err(EnvelopeError::Interrupted)) {
+            break;
+        }
+        let (surface, finer) = surface?;
+        motions = finer_motions;
+        let Some(surface) = surface else {
             // More poses take too long.
             if made.is_none() {
                 left.set(most_distances);
@@ -275,7 +284,8 @@ pub fn envelope(
             break;
         }
         cell *= 0.5;
-        made = of(&found.swept, cell)?;
+        // Without time for a finer surface this is the last one.
+        made = of(&found.swept, cell).ok().flatten();
     }
     if surface.triangles.is_empty() {
         let name = &model.shapes[request.shape.0].name;
@@ -286,6 +296,7 @@ pub fn envelope(
     }
     Ok(Envelope {
         is_within_error: enough && surface.deviation <= half,
+        interrupted: !(enough && surface.deviation <= half) && !more(),
         surface,
         poses: found.swept.len(),
         error,

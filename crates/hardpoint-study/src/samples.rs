@@ -120,13 +120,15 @@ pub(crate) fn failure_reason(stop: &Stop, model: &Model) -> String {
         | StopKind::DoesNotAssemble
         | StopKind::Locked { .. }
         | StopKind::LawNotFinite { .. }
+        | StopKind::LoadNotFinite { .. }
         | StopKind::FormulaNotFinite { .. }
         | StopKind::TooFar { .. }
         | StopKind::JointLimit { .. }
         | StopKind::Interrupted
         | StopKind::NothingHolds { .. }
         | StopKind::NoEquilibrium
-        | StopKind::Unstable { .. }) => kind,
+        | StopKind::Unstable { .. }
+        | StopKind::TooStiff { .. }) => kind,
     };
     Stop { kind, failed_time: 0.0, ..stop.clone() }.headline(model)
 }

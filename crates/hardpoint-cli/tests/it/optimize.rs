@@ -87,6 +87,14 @@ fn the_known_four_bar_is_found_and_saved_in_plain_numbers() {
     let drawn = bench.text("four_bar_inverse.toml");
     let kept = drawn.lines().zip(saved.lines()).filter(|(a, b)| a == b).count();
     assert_eq!((drawn.lines().count(), kept), (saved.lines().count(), saved.lines().count() - 12));
+
+    // The table begins at the design in the file, wherever the best search began.
+    assert_ne!(summary["best_start"], 0, "{summary}");
+    let text = bench.run(&["optimize", "four_bar_inverse.toml", "--starts", "3"]).stdout;
+    let text = String::from_utf8(text).unwrap();
+    let line = text.lines().find(|line| line.trim_start().starts_with("A_x ")).unwrap();
+    let words: Vec<&str> = line.split_whitespace().collect();
+    assert_eq!(words[1..7], ["-45", "mm", "0", "mm", "+45", "mm"], "{line}");
 }
 
 #[test]

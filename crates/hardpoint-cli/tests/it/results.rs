@@ -264,6 +264,46 @@ fn an_interrupted_run_leaves_the_part_that_was_solved() {
     assert!(String::from_utf8(output.stderr).unwrap().contains("warning[HP0405]: interrupted"));
 }
 
+#[cfg(unix)]
+#[test]
+fn an_interrupted_search_of_clearances_keeps_the_times_that_were_solved() {
+    use std::process::{Command, Stdio};
+    use std::time::Duration;
+    let bench = Bench::with(&[]);
+    let knee = Path::new(env!("CARGO_MANIFEST_DIR")).join("../hardpoint-file/tests/it/knee.toml");
+    let knee = std::fs::read_to_string(knee).unwrap();
+    bench.put("knee.toml", &knee.replace("steps = 20", "steps = 100000"));
+    let mut pause = Duration::from_millis(100);
+    let output = loop {
+        let mut command = bench.command(&["clearance", "knee.toml", "-o", "out", "--json"]);
+        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        // The folder is created after the handler is set.
+        while !bench.path("out").is_dir() {
+            assert_eq!(child.try_wait().unwrap(), None, "it ended without its folder");
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        std::thread::sleep(pause);
+        let kill = Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap();
+        let output = child.wait_with_output().unwrap();
+        match output.status.code() {
+            Some(130) if rows(&bench.text("out/clearances.csv")) > 0 => {
+                assert!(kill.success());
+                break output;
+            }
+            // Before the first step.
+            Some(130) => pause *= 2,
+            // After the last proof, with pairs that are nearer than required.
+            Some(0 | 1) => pause /= 2,
+            code => panic!("exit {code:?}: {}", String::from_utf8_lossy(&output.stderr)),
+        }
+        std::fs::remove_dir_all(bench.path("out")).unwrap();
+    };
+    let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(document["interrupted"], true, "{document}");
+    let pairs = document["pairs"].as_array().unwrap();
+    assert!(!pairs.is_empty() && pairs.iter().all(|pair| pair["least"].is_f64()), "{document}");
+}
+
 #[test]
 fn verify_passes_on_the_best_steps_and_names_the_worst() {
     let bench = Bench::with(&["slider.toml"]);

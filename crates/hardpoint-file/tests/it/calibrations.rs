@@ -5,8 +5,10 @@ use std::num::NonZero;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use hardpoint::model::{Measurements, Reading};
+use hardpoint::measure::outputs;
+use hardpoint::model::{CaseId, Measurements, Reading};
 use hardpoint::model::{Model, Scatter, VariableId};
+use hardpoint::run::{Analysis, Run};
 use hardpoint::topology::Formulation;
 use hardpoint_file::parse;
 use hardpoint_study::calibrate::{
@@ -363,6 +365,81 @@ fn readings_without_noise_take_no_more_designs() {
         for v in variables {
             // Round-off of the solved readings.
             assert!((found.design[v.0] - hidden[v.0]).abs() < 1e-10, "{:?}", found.design);
+        }
+    }
+}
+
+/// A lever on an elastic joint, held by a spring, under two forces: an equilibrium.
+const LEVER: &str = r#"
+name = "lever"
+units = { length = "mm", angle = "deg" }
+hardpoints = { A = [0, 0, 0], B = [300, 20, 0], S = [150, 200, 30] }
+bodies.arm = {}
+points.tip = { body = "arm", at = "B" }
+joints.j = { type = "spherical", bodies = ["ground", "arm"], at = "A", axis = "z", axis2 = "x" }
+equilibrium = {}
+[parameters]
+kx = { value = 300, design = true }
+ky = { value = 250, design = true }
+kt = { value = 4, design = true }
+pre = { value = 0, design = true }
+[forces]
+e = { type = "elastic_joint", joint = "j", x = "kx", y = "ky", z = 700, about_x = 9, about_y = 8, about_z = "kt" }
+s = { type = "spring", from = { body = "ground", at = "S" }, to = { body = "arm", at = [150, 10, 0] }, stiffness = 6, preload = "pre" }
+side = { type = "force", at = "tip", force = 1, along = [0.2, -1, 0.1], law = "0" }
+up = { type = "force", at = "tip", force = 300, along = "z", law = "0" }
+[cases.a]
+laws = { side = "200*t" }
+time = { end = 1, steps = 4 }
+[cases.b]
+laws = { side = "-150*t", up = "t" }
+time = { end = 1, steps = 4 }
+"#;
+
+#[test]
+fn a_lever_whose_preload_is_zero_is_found_in_few_designs() {
+    let model = parse(LEVER, "lever.toml").unwrap_or_else(|e| panic!("{e}")).model;
+    let mut hidden = vec![0.0; model.variables.len()];
+    // N/mm, N m/deg and N, as in the file: relative to the nominal values.
+    for (name, by) in [("kx", 60.0), ("ky", -28.0), ("kt", 0.6), ("pre", 60.0)] {
+        hidden[model.variable(name).unwrap().0] = by;
+    }
+    let tip: Vec<usize> = outputs(&model)
+        .iter()
+        .enumerate()
+        .filter(|(_, output)| output.name.starts_with("tip."))
+        .map(|(column, _)| column)
+        .collect();
+    assert_eq!(tip.len(), 3);
+    // Readings with all digits, and with those of a table in nanometres: both are far below any measurement. They come
+    // from the motions of the cases, not from postures.
+    for digit in [None, Some(1e-9)] {
+        let mut measured = Measurements::default();
+        for case in 0..model.cases.len() {
+            let moved = model.in_case(CaseId(case));
+            let solution =
+                Analysis::with(&moved, Formulation::Relative).unwrap().solve(Run::new().at(&hidden));
+            assert!(solution.stop.is_none());
+            for (k, t) in moved.times.iter().enumerate() {
+                let posture = measured.postures.len();
+                measured.postures.push(Vec::new());
+                let laws = &model.cases[case].force_laws;
+                measured.forces.push(laws.iter().map(|(e, law)| (*e, law.at(*t).value())).collect());
+                for &output in &tip {
+                    let value = solution.measured.value(k, output)[0];
+                    let value = digit.map_or(value, |digit: f64| (value / digit).round() * digit);
+                    measured.readings.push(Reading { posture, output, value, sigma: None });
+                }
+            }
+        }
+        let found = fitted(&model, &measured);
+        assert_eq!(found.status, Status::Found);
+        // Steps of the preload are those that move the readings, since it has no nominal value.
+        assert!(found.cost.designs <= 25, "{digit:?}: {:?}", found.cost);
+        let allowed = digit.map_or(1e-7, |digit| 1e6 * digit);
+        for v in all(&model) {
+            let (found, hidden) = (found.design[v.0], hidden[v.0]);
+            assert!((found - hidden).abs() < allowed * hidden.abs(), "{digit:?}: {found} {hidden}");
         }
     }
 }

@@ -1,7 +1,12 @@
 //! Clearances: published data of a knee, shapes against samples, metamorphic checks.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
 use hardpoint::Analysis;
 use hardpoint::model::Model;
+use hardpoint::motion::StopKind;
 use hardpoint::run::{ClearanceProof, Clearances, MinimumPlace, PairClearance};
 use hardpoint_file::parse;
 use serde_json::Value;
@@ -122,6 +127,50 @@ fn a_limit_of_a_clearance_brings_shapes_apart() {
     for pair in &analysis.clearances(&best.design).pairs {
         let least = pair.least().unwrap().at.distance[0];
         assert!(least > 1.5e-3 - LIMIT, "{:?}: {least}", pair.shapes);
+    }
+}
+
+#[test]
+fn an_interrupted_search_keeps_the_times_that_were_solved() {
+    let model = model_of(&KNEE.replace("steps = 20", "steps = 20000"));
+    let whole = Analysis::new(&model).unwrap().clearances(&[]);
+    let search = |pause: Duration| {
+        let flag = Arc::new(AtomicBool::new(pause.is_zero()));
+        let analysis = Analysis::new(&model).unwrap().ended_by(Arc::clone(&flag));
+        std::thread::scope(|scope| {
+            scope.spawn(|| {
+                std::thread::sleep(pause);
+                flag.store(true, Ordering::Relaxed);
+            });
+            analysis.clearances(&[])
+        })
+    };
+    let none = search(Duration::ZERO);
+    assert!(none.pairs.iter().all(|pair| pair.curve.is_empty() && pair.least().is_none()));
+    // The duration of the search depends on the machine.
+    let mut pause = Duration::from_millis(20);
+    let found = loop {
+        let found = search(pause);
+        match &found.stop {
+            None => pause /= 2,
+            Some(_) if found.pairs[0].curve.is_empty() => pause *= 2,
+            Some(_) => break found,
+        }
+    };
+    let stop = found.stop.unwrap();
+    assert_eq!(stop.kind, StopKind::Interrupted);
+    for (part, whole) in found.pairs.iter().zip(&whole.pairs) {
+        let solved = part.curve.len();
+        assert_eq!(stop.last_time, part.curve.last().map(|at| at.time));
+        let lowest = part.curve.iter().map(|at| at.distance[0]).fold(f64::INFINITY, f64::min);
+        assert!(part.least().unwrap().at.distance[0] <= lowest + 1e-12);
+        assert!(part.minima.iter().all(|minimum| minimum.d.len() == model.variables.len()));
+        for (a, b) in part.curve.iter().zip(&whole.curve[..solved]) {
+            assert!(a.time == b.time && (a.distance[0] - b.distance[0]).abs() < 1e-12);
+        }
+        // Both have the same contacts so far, at the nearest times that were solved.
+        let contacts = |pair: &PairClearance| pair.contacts.iter().map(|c| c.begins).collect::<Vec<_>>();
+        assert!(contacts(whole).starts_with(&contacts(part)));
     }
 }
 

@@ -1,14 +1,16 @@
 //! Envelopes of shapes: closed surfaces, volumes with closed forms, and random positions between those of the envelope.
 
+use std::cell::Cell;
 use std::collections::HashMap;
 use std::f64::consts::PI;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use hardpoint::model::Model;
 use hardpoint::run::{Analysis, Run};
 use hardpoint::space::Vec3;
 use hardpoint::topology::Formulation;
 use hardpoint_file::parse;
-use hardpoint_study::envelope::{Envelope, Overrides, Request, Triangles, envelope};
+use hardpoint_study::envelope::{Envelope, EnvelopeError, Overrides, Request, Triangles, envelope};
 
 /// A slider with a ball and a drum, and an arm on it.
 const SLIDER: &str = r#"
@@ -42,6 +44,31 @@ fn envelope_of(model: &Model, overrides: Overrides) -> Envelope {
 
 fn overrides(shape: &str, case: &str, error: f64) -> Overrides {
     Overrides { shape: shape.into(), case: Some(case.into()), error: Some(error), ..Overrides::default() }
+}
+
+#[test]
+fn an_interrupted_envelope_is_the_last_surface() {
+    let model = slider();
+    let request = Request::of(&model, overrides("ball", "along", 1e-5)).unwrap();
+    let calls = Cell::new(0_usize);
+    let until = |most: usize| {
+        let count = AtomicUsize::new(0);
+        let more = || count.fetch_add(1, Ordering::Relaxed) < most;
+        let found = envelope(&model, Formulation::Relative, &[], &request, &more);
+        calls.set(count.into_inner());
+        found
+    };
+    let whole = until(usize::MAX).unwrap();
+    let all = calls.get();
+    assert!(!whole.interrupted && whole.is_within_error);
+    assert!(matches!(until(0), Err(EnvelopeError::Interrupted)));
+    // The last surface takes most of the calls.
+    let part = until(all - all / 8).unwrap();
+    assert!(part.interrupted && !part.is_within_error && calls.get() <= all);
+    assert_closed(&part.surface);
+    assert!(part.surface.triangles.len() < whole.surface.triangles.len());
+    let volumes = [&part, &whole].map(|found| found.surface.volume());
+    assert!((volumes[0] / volumes[1] - 1.0).abs() < 0.02, "{volumes:?}");
 }
 
 /// Every edge of a closed surface belongs to two triangles, which pass it in opposite directions.

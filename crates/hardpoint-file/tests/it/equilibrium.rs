@@ -986,6 +986,152 @@ fn what_nothing_holds_is_named() {
     assert_eq!(stop.headline(&model), "nothing holds the angle of joint `bush`");
 }
 
+/// An arm on bushings at these places, mm, with these stiffnesses each. Its first point is far from both.
+fn on_bushings(places: &[[f64; 3]], stiffnesses: &str, far: [f64; 3], [unit, factor]: [&str; 2]) -> String {
+    let factor: f64 = factor.parse().unwrap();
+    let at = |k: usize| -> [f64; 3] { std::array::from_fn(|c| factor * (places[k][c] + far[c])) };
+    let (hardpoints, bushings): (String, String) = (0..places.len())
+        .map(|k| {
+            let ends = format!(
+                "from = {{ body = \"ground\", at = \"P{k}\" }}, to = {{ body = \"arm\", at = \"P{k}\" }}"
+            );
+            let bushing = format!("b{k} = {{ type = \"bushing\", {ends}, {stiffnesses} }}\n");
+            (format!("P{k} = {:?}\n", at(k)), bushing)
+        })
+        .unzip();
+    let tip: [f64; 3] = std::array::from_fn(|c| factor * (far[c] + [300.0, 40.0, 0.0][c]));
+    format!(
+        r#"
+name = "held"
+units = {{ length = "{unit}", angle = "deg" }}
+bodies = {{ arm = {{}} }}
+points = {{ tip = {{ body = "arm", at = {tip:?} }} }}
+time = {{ at = [0, 1] }}
+[hardpoints]
+{hardpoints}[forces]
+{bushings}[equilibrium]
+"#
+    )
+}
+
+#[test]
+fn a_motion_that_nothing_holds_is_named_by_its_axis() {
+    // A bushing leaves the motion of the stiffness that it does not have, about or along its own axes; two without
+    // torsional stiffness leave the rotation about the line through both.
+    let (one, two): (&[_], &[_]) = (&[[0.0; 3]], &[[0.0; 3], [300.0, 400.0, 0.0]]);
+    let cases = [
+        (one, "x = 100, y = 200, z = 300, about_x = 5, about_z = 7", "about y through `P0`"),
+        (one, "x = 100, y = 200, z = 300, about_y = 5, about_z = 7", "about x through `P0`"),
+        (one, "x = 100, y = 200, z = 300, about_x = 5, about_y = 7", "about z through `P0`"),
+        (one, "x = 100, y = 0, z = 300, about_x = 5, about_y = 6, about_z = 7", "along y"),
+        (two, "x = 100, y = 200, z = 300", "about direction [0.6, 0.8, 0] through `P0`"),
+    ];
+    for (places, stiffnesses, expected) in cases {
+        for far in [[0.0; 3], [500.0, 700.0, -300.0], [-12000.0, 3.0, 900.0]] {
+            for unit in [["mm", "1"], ["m", "1e-3"]] {
+                let model = file(&on_bushings(places, stiffnesses, far, unit)).model;
+                for formulation in [Formulation::Relative, Formulation::Absolute] {
+                    let stop = Analysis::with(&model, formulation).unwrap().run().stop.unwrap();
+                    let expected = format!("nothing holds body `arm` {expected}");
+                    assert_eq!(stop.headline(&model), expected, "{far:?} {unit:?} {formulation:?}");
+                }
+            }
+        }
+    }
+}
+
+/// An arm of 300 mm on an elastic hinge, loaded at its end in N by this law; x is a stiffness in N/mm.
+fn elastic_hinge(x: &str, far: [f64; 3], law: &str) -> String {
+    let tip = [far[0] + 300.0, far[1], far[2]];
+    format!(
+        r#"
+name = "hinge"
+units = {{ length = "mm", angle = "deg" }}
+hardpoints = {{ A = {far:?}, B = {tip:?} }}
+bodies = {{ arm = {{}} }}
+points = {{ tip = {{ body = "arm", at = "B" }} }}
+time = {{ at = [0, 0.5, 1] }}
+masses = {{ m = {{ type = "rigid", centre = {{ body = "arm", at = "B" }}, mass = 1 }} }}
+[joints]
+j = {{ type = "revolute", bodies = ["ground", "arm"], at = "A", axis = "y", axis2 = "x" }}
+[forces]
+e = {{ type = "elastic_joint", joint = "j", x = {x}, y = 100, about_z = 5 }}
+load = {{ type = "force", at = "tip", force = 100, along = "-z", law = "{law}" }}
+[equilibrium]
+"#
+    )
+}
+
+#[test]
+fn a_stiffness_that_hides_the_others_is_named() {
+    for (x, far) in [
+        ("1e18", [0.0; 3]),
+        ("1e21", [0.0; 3]),
+        ("1e60", [0.0; 3]),
+        ("1e300", [0.0; 3]),
+        ("1e15", [500.0, 700.0, -300.0]),
+        ("1e18", [500.0, 700.0, -300.0]),
+    ] {
+        let model = file(&elastic_hinge(x, far, "t")).model;
+        let stop = Analysis::new(&model).unwrap().run().stop.unwrap();
+        assert_eq!(stop.code(), "HP0425", "{x}: {stop:?}");
+        assert!(stop.headline(&model).contains("the stiffness of joint `j` along x is too large"), "{x}");
+    }
+    solved(&elastic_hinge("1e9", [500.0, 700.0, -300.0], "t"));
+}
+
+#[test]
+fn a_load_without_a_value_between_output_times_is_named_with_its_time() {
+    // Poles; and no value between 0.3 and 0.4, where the other load turns.
+    for (law, other, time) in [
+        ("1/(t - 0.3)", "1", 0.3),
+        ("1/(0.3 - t)^2", "1", 0.3),
+        ("tan(pi*t/0.7)", "1", 0.35),
+        ("sqrt((t - 0.3)*(t - 0.4))", "abs(t - 0.35)", 0.3),
+    ] {
+        let other = format!(
+            "other = {{ type = \"force\", at = \"tip\", force = 1, along = \"x\", law = \"{other}\" }}\n[equilibrium]"
+        );
+        let text = elastic_hinge("100", [0.0; 3], law).replace("[equilibrium]", &other);
+        let model = file(&text).model;
+        let stop = Analysis::new(&model).unwrap().run().stop.expect(law);
+        let expected = format!("the law of force `load` has no finite value at t = {time:.6} s");
+        assert_eq!((stop.code(), stop.headline(&model)), ("HP0404", expected), "{law}");
+        assert_eq!(stop.last_time, Some(0.0), "{law}");
+    }
+}
+
+#[test]
+fn an_elastic_joint_that_cannot_be_cut_is_reported_with_the_reason() {
+    let held = "t = { type = \"bushing\", from = { body = \"ground\", at = \"B\" }, to = { body = \"arm\", at = \"B\" }, \
+                x = 100, y = 200, z = 300, about_x = 5, about_y = 6, about_z = 7 }\n[equilibrium]";
+    let alone = elastic_hinge("100", [0.0; 3], "t")
+        .replace("revolute", "universal")
+        .replace(", about_z = 5", "")
+        .replace("[equilibrium]", held);
+    let requested = alone.replace("axis2 = \"x\"", "axis2 = \"x\", cut = true");
+    let fault = |text: &str, formulation| {
+        let error = Analysis::with(&file(text).model, formulation).err().unwrap();
+        assert_eq!(error.code(), "HP0306");
+        error.help()
+    };
+    assert!(Analysis::new(&file(&alone).model).unwrap().run().stop.is_none());
+    let help = fault(&alone, Formulation::Absolute);
+    assert!(help.contains("leave out the option `--absolute`") && !help.contains("stiffness"), "{help}");
+    for formulation in [Formulation::Relative, Formulation::Absolute] {
+        let help = fault(&requested, formulation);
+        assert!(help.contains("remove `cut = true` from `j`"), "{help}");
+    }
+    // Without the request or the option it would be cut too.
+    let second = "k = { type = \"universal\", bodies = [\"ground\", \"arm\"], at = \"B\", axis = \"y\", axis2 = \"x\" }\n[forces]\n\
+                  f = { type = \"elastic_joint\", joint = \"k\", x = 100, y = 100 }";
+    let twice = requested.replace("[forces]", second);
+    for formulation in [Formulation::Relative, Formulation::Absolute] {
+        let help = fault(&twice, formulation);
+        assert!(help.contains("make another joint of the loop rigid"), "{help}");
+    }
+}
+
 #[test]
 fn faults_are_reported() {
     let texts = [

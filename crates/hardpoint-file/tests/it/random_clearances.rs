@@ -287,7 +287,8 @@ fn examine(
         ClearanceProof::NotProved { reason: ProofFailure::WithinRing, .. } => tally.within_ring += 1,
         ClearanceProof::NotProved { reason: ProofFailure::Motion(_), .. } => tally.of_motion += 1,
         ClearanceProof::NotProved {
-            reason: ProofFailure::Nearer { .. } | ProofFailure::Mesh { .. }, ..
+            reason: ProofFailure::Nearer { .. } | ProofFailure::Mesh { .. } | ProofFailure::Interrupted,
+            ..
         } => fail(format!("least {least} at {}: {proof:?}", lowest.at.time)),
     }
     let reference = refined(model, pair.shapes, &coarse);

@@ -934,13 +934,21 @@ fn one_variable_has_no_interactions() {
 
 #[test]
 fn a_worst_case_without_first_and_second_derivatives_is_in_order() {
-    for (function, expected) in
-        [("b^3", [-1e-6, 1e-6]), ("-b^3", [-1e-6, 1e-6]), ("b^4", [0.0, 1e-7]), ("-b^4", [-1e-7, 0.0])]
-    {
+    // The gradients at the first corners lead to the others.
+    for (function, expected) in [
+        ("b^3", [-1e-6, 1e-6]),
+        ("-b^3", [-1e-6, 1e-6]),
+        ("b^4", [0.0, 1e-7]),
+        ("-b^4", [-1e-7, 0.0]),
+        ("a^3 - b^3", [-2e-6, 2e-6]),
+        ("8*b^3 - a^3", [-9e-6, 9e-6]),
+    ] {
         let file = curved("10 + a", function, "");
         let found = examined(&file, |asked| asked.samples = 0);
         for (extreme, expected) in spread(&file, &found, "y").worst.iter().zip(expected) {
             assert!((extreme.exact.unwrap() - expected).abs() < 1e-15, "{function}: {extreme:?}");
         }
+        // The nominal design, two for each second derivative, and at most two for each of the four worst cases.
+        assert!(found.cost.designs <= 1 + 2 * 2 + 4 * 2, "{function}: {:?}", found.cost);
     }
 }

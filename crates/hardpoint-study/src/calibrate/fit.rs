@@ -3,6 +3,7 @@
 use std::cell::{Cell, RefCell};
 
 use crate::evaluation::StudyCost;
+use crate::magnitude::Magnitude;
 use crate::recent::Recent;
 use crate::request::RequestError;
 use crate::sweep::quantile;
@@ -30,6 +31,9 @@ const RUNAWAY: f64 = 1e6;
 const ROUND_OFF: f64 = 1e-9;
 /// The objective has converged if an iteration lowers it by less than this fraction.
 const SETTLED: f64 = 1e-12;
+/// Round-off of a solved value, as a fraction of it and of the magnitude of its quantity in the mechanism: positions,
+/// those of equilibria too, are solved to less.
+const ROUND_OFF_OF_VALUE: f64 = 1e-12;
 /// Residuals vanish below this fraction of those of the nominal design. Equilibria are solved to about a tenth of it.
 const VANISHED: f64 = 1e-11;
 /// Median absolute value of normal residuals, as a fraction of their standard deviation.
@@ -71,8 +75,9 @@ pub(super) struct FitWorkspace<'b> {
     /// True if all readings have standard deviations.
     pub has_sigmas: bool,
     nominal: Vec<Option<ReachedPosture>>,
-    /// Sum of squares that is zero in comparison with that of the nominal design.
-    vanished: f64,
+    /// Sum of squares that round-off of the solved values leaves: a smaller one, or a smaller decrease of a sum, is
+    /// none.
+    round_off: f64,
     pub cost: RefCell<StudyCost>,
     /// Number of designs of the current iteration that do not reach all postures.
     unreached: Cell<usize>,
@@ -119,7 +124,7 @@ struct UndampedStep {
     directions: Vec<(Vec<f64>, f64)>,
     /// `u . r`
     components: Vec<f64>,
-    /// Decrease of the squares by the step, as a fraction of them; 0 where they have vanished.
+    /// Decrease of the squares by the step, as a fraction of them; 0 where it is round-off.
     decrease: f64,
 }
 
@@ -140,7 +145,7 @@ impl<'b> FitWorkspace<'b> {
             compared: Vec::new(),
             has_sigmas: request.measured.readings.iter().all(|r| r.sigma.is_some()),
             nominal: Vec::new(),
-            vanished: 0.0,
+            round_off: 0.0,
             cost: RefCell::new(StudyCost { designs: 1, ..StudyCost::default() }),
             unreached: Cell::new(0),
         }
@@ -170,7 +175,8 @@ impl<'b> FitWorkspace<'b> {
                 "fit variables that it can follow",
             ));
         }
-        self.steps = self.parameters.iter().map(|p| self.natural_step(*p)).collect();
+        let magnitudes = self.magnitudes();
+        self.steps = self.parameters.iter().map(|p| self.natural_step(*p, &magnitudes)).collect();
         let bounds = self.parameters.iter().zip(&self.steps).map(|(p, step)| self.bounds_of(*p, *step));
         self.bounds = bounds.collect();
         self.priors = PriorRows::of(self.model, &self.request.prior, &self.parameters, &self.steps);
@@ -195,9 +201,21 @@ impl<'b> FitWorkspace<'b> {
                 "give standard deviations (`sigma`), fit fewer variables, or measure more",
             ));
         }
+        let magnitudes = self.magnitudes();
+        let round_off = |k: &usize| (ROUND_OFF_OF_VALUE * magnitudes[*k]).powi(2);
         let at_nominal = self.rows(&self.nominal, &vec![0.0; variables]);
-        self.vanished = VANISHED * VANISHED * at_nominal.r.iter().map(|r| r * r).sum::<f64>();
+        let vanished = at_nominal.r.iter().map(|r| (VANISHED * r).powi(2)).sum::<f64>();
+        self.round_off = self.compared.iter().map(round_off).sum::<f64>().max(vanished);
         Ok(())
+    }
+
+    /// Magnitude of each reading: that of its quantity in the mechanism or its value, in the unit of its residual.
+    fn magnitudes(&self) -> Vec<f64> {
+        let (magnitude, outputs) = (Magnitude::at_rest(self.model), outputs(self.model));
+        let of = |reading: &Reading| {
+            magnitude.of(outputs[reading.output].dimension, 0).max(reading.value.abs()) / self.unit(reading)
+        };
+        self.readings().iter().map(of).collect()
     }
 
     /// Variable of a parameter in the models of the postures; `None` for an offset of readings.
@@ -213,15 +231,20 @@ impl<'b> FitWorkspace<'b> {
     }
 
     /// Natural step of a parameter: of a variable that moves the mechanism, about its size or a radian; of a stiffness
-    /// or another plain number that moves nothing by itself, its typical or nominal value.
-    fn natural_step(&self, parameter: FittedParameter) -> f64 {
+    /// or another plain number that moves nothing by itself, its typical or nominal value, or if that is zero, as of a
+    /// preload, the change that moves the readings by their magnitudes.
+    fn natural_step(&self, parameter: FittedParameter, magnitudes: &[f64]) -> f64 {
         let size = self.model.size();
         match parameter {
             FittedParameter::Variable(v) => {
                 let (step, variable) = (self.model.natural_step(v), &self.model.variables[v.0]);
                 let value = variable.typical.unwrap_or(self.model.nominal_value(v).abs());
                 let moves_nothing = variable.quantity == Quantity::Number && step == size;
-                if moves_nothing && value > 0.0 { value } else { step }
+                match moves_nothing {
+                    true if value > 0.0 => value,
+                    true => self.moving_step(parameter, magnitudes).unwrap_or(step),
+                    false => step,
+                }
             }
             FittedParameter::Driver(driver) => {
                 match self.model.driven(&self.model.drivers[driver.0]).quantity {
@@ -239,6 +262,20 @@ impl<'b> FitWorkspace<'b> {
                 }
             },
         }
+    }
+
+    /// Change of a parameter that moves the readings by their magnitudes, to first order; `None` if none depends on it.
+    fn moving_step(&self, parameter: FittedParameter, magnitudes: &[f64]) -> Option<f64> {
+        let (mut moved, mut all) = (0.0, 0.0);
+        for (reading, magnitude) in self.readings().iter().zip(magnitudes) {
+            let Some(posture) = &self.nominal[reading.posture] else { continue };
+            let d = self.d(posture, reading.output, parameter) / self.unit(reading);
+            if d.is_finite() {
+                moved += d * d;
+                all += magnitude * magnitude;
+            }
+        }
+        Some((all / moved).sqrt()).filter(|step| step.is_finite() && *step > 0.0)
     }
 
     /// Bounds of a parameter in natural steps; infinite if it has none, or bounds are not kept.
@@ -418,8 +455,8 @@ impl<'b> FitWorkspace<'b> {
             (of_readings.sum::<f64>() + of_priors.sum::<f64>()) / s
         };
         let components: Vec<f64> = directions.iter().map(component).collect();
-        let squares = Self::squares(at, weights, scale);
-        let decrease = if squares <= self.vanished { 0.0 } else { dot(&components, &components) / squares };
+        let by = dot(&components, &components);
+        let decrease = if by <= self.round_off { 0.0 } else { by / Self::squares(at, weights, scale) };
         UndampedStep { directions, components, decrease }
     }
 
@@ -540,7 +577,7 @@ impl<'b> FitWorkspace<'b> {
         let by: Vec<f64> = best.iter().zip(x).map(|(best, x)| best - x).collect();
         let after: f64 = rows.iter().zip(&right).map(|(row, r)| (dot(row, &by) + r).powi(2)).sum();
         let before = Self::squares(at, weights, scale);
-        let is_better = before > self.vanished && before - after > NEAR * before;
+        let is_better = before - after > self.round_off.max(NEAR * before);
         if is_better && self.unreached.get() > 0 { Status::Stuck } else { Status::Found }
     }
 

@@ -126,6 +126,7 @@ pub(super) fn path_end(stop: &Stop, model: &Model) -> String {
         | StopKind::DoesNotAssemble
         | StopKind::Locked { .. }
         | StopKind::LawNotFinite { .. }
+        | StopKind::LoadNotFinite { .. }
         | StopKind::FormulaNotFinite { .. }
         | StopKind::TooFar { .. }
         | StopKind::JointLimit { .. }
@@ -133,7 +134,8 @@ pub(super) fn path_end(stop: &Stop, model: &Model) -> String {
         | StopKind::NothingHolds { .. }
         | StopKind::LimitLoad { .. }
         | StopKind::NoEquilibrium
-        | StopKind::Unstable { .. } => stop.happened(model),
+        | StopKind::Unstable { .. }
+        | StopKind::TooStiff { .. } => stop.happened(model),
     }
 }
 

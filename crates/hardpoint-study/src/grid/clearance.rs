@@ -118,7 +118,7 @@ impl GridClearances {
         })?;
         ended |= !more();
         let solved = found.first().map_or(0, |values| values.iter().flatten().count());
-        let mut search = Search { model, grid, formulation, design, ranges: [first, second], cost };
+        let mut search = Search { model, grid, formulation, design, ranges: [first, second], cost, more };
         let mut all = Vec::new();
         for (shapes, values) in pairs.into_iter().zip(&found) {
             let (low, high) = values
@@ -180,6 +180,8 @@ struct Search<'a> {
     /// Positions of both drivers, relative to the design configuration.
     ranges: [&'a [f64]; 2],
     cost: StudyCost,
+    /// False once the caller ends the study.
+    more: &'a (dyn Fn() -> bool + Sync),
 }
 
 /// Distance at a position, with its first and second derivatives by both drivers as fractions of their ranges.
@@ -214,6 +216,9 @@ impl Search<'_> {
             // One step of the grid.
             let mut reach = self.ranges.iter().map(|v| 1.0 / (v.len() - 1) as f64).fold(0.0, f64::max);
             for _ in 0..MOST_STEPS {
+                if !(self.more)() {
+                    break;
+                }
                 let (step, is_short) = step_within(x, &here, reach);
                 let length = step[0].hypot(step[1]);
                 if length <= LOCATED {

@@ -32,7 +32,7 @@ pub use allocation::{AllocatedTolerance, Allocation, AllocationError};
 pub use contributions::{Contributions, SpreadModel};
 pub use curves::{BandPoint, CurveBands};
 use deviations::Deviations;
-use hardpoint::run::{metric_numbers, place_of};
+use hardpoint::run::{metrics, place_of};
 pub use monte_carlo::{FailureGroup, MonteCarlo, SampledCurve, SampledMetric, Yield};
 pub use pins::SideChange;
 pub use request::{Overrides, Request, allocation_rule};
@@ -44,6 +44,10 @@ pub const NONLINEAR: f64 = 0.1;
 /// Step of gradient differences to either side, as a fraction of a natural step: truncation, in h^2, and round-off, in
 /// 1/h, are then about 1e-8 of the second derivative.
 const STEP: f64 = 1e-4;
+/// Maximum number of further designs that are solved for a worst case: the second one is seldom improved.
+const MOST_FURTHER: usize = 3;
+/// Predicted gain of a further design, as a fraction of the deviation of the metric, that is worth solving it.
+const WORTHWHILE: f64 = 1e-3;
 
 /// Result of a tolerance study.
 #[derive(Clone, Debug)]
@@ -407,16 +411,8 @@ impl Study<'_> {
         };
         let second = hessian.map(|h| settled_moments(self.deviations.second_order(&d, h)));
         let worst = [-1.0, 1.0].map(|sign| {
-            let mut extreme = worst::extreme(self.deviations, nominal, &d, hessian, sign);
-            let design = self.deviations.design(self.model.variables.len(), &extreme.deviations);
-            let analysis = &self.motions.analyses()[one.motion];
-            let solution = analysis.solve(Run::new().at(&design).without_sensitivities());
-            *cost += StudyCost { designs: 1, motions: 1, steps: solution.motion.len() };
-            match &solution.stop {
-                Some(stop) => extreme.why = Some(stop.headline(analysis.model())),
-                None => extreme.exact = metric_numbers(analysis.model(), &solution).nth(one.place).flatten(),
-            }
-            extreme
+            let predicted = worst::extreme(self.deviations, nominal, &d, hessian, sign);
+            self.solve_extreme(one, predicted, hessian, sign, round_off, cost)
         });
         let worst = worst::ordered(worst, nominal);
         // Round-off has no contributions.
@@ -437,6 +433,51 @@ impl Study<'_> {
             second,
             round_off,
         }
+    }
+
+    /// Solves the design at a predicted extreme, and goes on to designs that the exact gradient there predicts to be
+    /// worse: derivatives at the nominal design do not show the sign of a cubic metric, for example.
+    fn solve_extreme(
+        &self,
+        one: &StudiedMetric,
+        mut extreme: Extreme,
+        hessian: Option<&[Vec<f64>]>,
+        sign: f64,
+        round_off: f64,
+        cost: &mut StudyCost,
+    ) -> Extreme {
+        let nominal = self.nominal.metrics[one.motion][one.place].value.unwrap_or_default();
+        let mut solve = |deviations: &[f64]| {
+            let design = self.deviations.design(self.model.variables.len(), deviations);
+            let analysis = &self.motions.analyses()[one.motion];
+            let solution = analysis.solve(Run::new().at(&design));
+            *cost += StudyCost { designs: 1, motions: 1, steps: solution.motion.len() };
+            match &solution.stop {
+                Some(stop) => Err(stop.headline(analysis.model())),
+                None => {
+                    let found = metrics(analysis.model(), &solution).swap_remove(one.place);
+                    Ok(found.value.map(|value| (value, self.by_tolerated(&found.d))))
+                }
+            }
+        };
+        let mut at = match solve(&extreme.deviations) {
+            Ok(found) => found,
+            Err(why) => return Extreme { why: Some(why), ..extreme },
+        };
+        extreme.exact = at.as_ref().map(|(value, _)| *value);
+        for _ in 0..MOST_FURTHER {
+            let Some((value, g)) = at.filter(|(_, g)| g.iter().all(|x| x.is_finite())) else { break };
+            let next = worst::extreme_from(self.deviations, &extreme.deviations, (value, &g), hessian, sign);
+            let gain = sign * (next.predicted() - value);
+            if !(gain > round_off.max(WORTHWHILE * (value - nominal).abs())) {
+                break;
+            }
+            at = solve(&next.deviations).ok().flatten().filter(|(next, _)| sign * (next - value) > 0.0);
+            if let Some((value, _)) = &at {
+                (extreme.exact, extreme.deviations) = (Some(*value), next.deviations);
+            }
+        }
+        extreme
     }
 
     fn limits(&self, metrics: &[MetricSpread]) -> Vec<LimitYield> {

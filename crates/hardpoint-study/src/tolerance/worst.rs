@@ -18,7 +18,8 @@ pub struct Extreme {
     /// Second-order value, if second derivatives are known: extreme of the quadratic, found by ascent from the
     /// first-order extreme and its neighbours.
     pub second: Option<f64>,
-    /// Deviations at the worst case, per toleranced variable: to second order if known, otherwise to first order.
+    /// Deviations at the worst case, per toleranced variable: those of the exact metric if it is known, otherwise to
+    /// second or to first order.
     pub deviations: Vec<f64>,
     /// Exact metric of the design at the worst case.
     pub exact: Option<f64>,
@@ -57,6 +58,28 @@ pub(super) fn extreme(of: &Deviations, value: f64, g: &[f64], h: Option<&[Vec<f6
     }
 }
 
+/// Extreme of a function with a value and a gradient at these deviations, and the second derivatives of the nominal
+/// design, as [`extreme`].
+pub(super) fn extreme_from(
+    of: &Deviations,
+    d: &[f64],
+    (value, g): (f64, &[f64]),
+    h: Option<&[Vec<f64>]>,
+    sign: f64,
+) -> Extreme {
+    // With g = g_0 + H d and f = f_0 + g_0' d + d' H d / 2.
+    let bend: Vec<f64> = h.map_or_else(|| vec![0.0; d.len()], |h| h.iter().map(|row| dot(row, d)).collect());
+    let at_nominal: Vec<f64> = g.iter().zip(&bend).map(|(g, bend)| g - bend).collect();
+    extreme(of, value - dot(&at_nominal, d) - 0.5 * dot(&bend, d), &at_nominal, h, sign)
+}
+
+impl Extreme {
+    /// Predicted value, to the highest known order.
+    pub(super) fn predicted(&self) -> f64 {
+        self.second.unwrap_or(self.first)
+    }
+}
+
 /// Exact minimum and maximum: each design at a predicted worst case, and the nominal one, is within the tolerances, and
 /// where the first and second derivatives vanish the prediction says nothing of their order.
 pub(super) fn ordered(ends: [Extreme; 2], nominal: f64) -> [Extreme; 2] {
@@ -77,25 +100,24 @@ pub(super) fn ordered(ends: [Extreme; 2], nominal: f64) -> [Extreme; 2] {
 }
 
 /// Every tolerance at the end of its reach, along the gradient; without a gradient, at the upper end for the maximum
-/// (`sign` 1), and at the lower end for the minimum.
+/// (`sign` 1), and at the lower end for the minimum: both are then at opposite corners.
 fn corner(of: &Deviations, g: &[f64], sign: f64) -> Vec<f64> {
     let mut d = vec![0.0; g.len()];
     for block in &of.blocks {
-        let (direction, to) = (&g[block.range()], &mut d[block.range()]);
-        if !towards(direction, block.reach, to) {
-            to.fill(sign * block.reach / (block.len as f64).sqrt());
-        }
+        towards(&g[block.range()], block, sign, &mut d[block.range()]);
     }
     d
 }
 
-/// Moves a point to the end of a reach in a direction; false if there is no direction.
-fn towards(direction: &[f64], reach: f64, to: &mut [f64]) -> bool {
+/// Moves the deviations of a tolerance to the end of its reach in a direction; where that is zero, to the end at which
+/// all of them are the same number of this sign.
+fn towards(direction: &[f64], block: &Block, sign: f64, to: &mut [f64]) {
     let norm = dot(direction, direction).sqrt();
     if norm > 0.0 {
-        to.iter_mut().zip(direction).for_each(|(x, g)| *x = reach * g / norm);
+        to.iter_mut().zip(direction).for_each(|(x, g)| *x = block.reach * g / norm);
+    } else {
+        to.fill(sign * block.reach / (block.len as f64).sqrt());
     }
-    norm > 0.0
 }
 
 /// `g' d + d' H d / 2`, with each tolerance of d within its reach.
@@ -151,9 +173,7 @@ impl Quadratic<'_> {
         for _ in 0..TURNS {
             let before = (self.at(d), d[block.range()].to_vec());
             let slope: Vec<f64> = block.range().map(|i| self.slope(i, d) + mu * d[i]).collect();
-            if !towards(&slope, block.reach, &mut d[block.range()]) {
-                d[block.range()].fill(block.reach / (block.len as f64).sqrt());
-            }
+            towards(&slope, block, 1.0, &mut d[block.range()]);
             if self.at(d) < before.0 {
                 d[block.range()].copy_from_slice(&before.1);
                 return;

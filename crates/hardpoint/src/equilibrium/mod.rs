@@ -10,8 +10,10 @@
 //! | `release` | p | the mechanism with its elastic joints open and their openings as drivers |
 //! | `solver` | r, K | Newton's method on the openings, and their derivatives by the design |
 //! | `waypoints` | c | times between output times at which laws turn |
+//! | `direction` | | names of directions that nothing holds, or that become unstable |
 //! | `second` | | second derivatives by the design and along a force, a driver or the design |
 
+mod direction;
 mod release;
 mod second;
 mod solver;

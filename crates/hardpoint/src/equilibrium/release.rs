@@ -68,8 +68,7 @@ pub(crate) fn release(
     // A joint that closes a loop of elastic joints leaves its directions to its force.
     let OpenTree { cut, .. } = open_tree(&open, &uncut);
     if let Some(joint) = uncut.iter().copied().find(|joint| cut[joint.0]) {
-        let name = &model.joints[joint.0].name;
-        return Err(TopologyError::ElasticLoop { joint, joint_name: name.clone() });
+        return Err(elastic_loop(model, formulation, joint));
     }
     // The tree stays the same whatever openings turn out to be determined.
     for (joint, cut) in open.joints.iter_mut().zip(&cut) {
@@ -110,6 +109,33 @@ pub(crate) fn release(
     let released = model.equilibrium.iter().flat_map(|e| e.released.iter().copied());
     let openings = released.chain((own.0..open.drivers.len()).map(DriverId)).collect();
     Ok((Released { model: open, openings }, topology))
+}
+
+/// Error of a joint that is cut and cannot be. If it closes a loop, it would be cut in relative coordinates too, and
+/// without the request of the model.
+fn elastic_loop(model: &Model, formulation: Formulation, joint: JointId) -> TopologyError {
+    let mut uncut = model.clone();
+    uncut.joints[joint.0].cut = false;
+    let (cut, otherwise) = match formulation {
+        Formulation::Absolute => (CutReason::Absolute, release(model, Formulation::Relative).err()),
+        Formulation::Relative if model.joints[joint.0].cut => {
+            (CutReason::Requested, release(&uncut, formulation).err())
+        }
+        Formulation::Relative => (CutReason::ClosesLoop, None),
+    };
+    match otherwise {
+        Some(error @ TopologyError::ElasticLoop { .. }) => error,
+        Some(
+            TopologyError::UnderDriven { .. }
+            | TopologyError::Singular { .. }
+            | TopologyError::OverDriven { .. }
+            | TopologyError::Immovable { .. },
+        )
+        | None => {
+            let joint_name = model.joints[joint.0].name.clone();
+            TopologyError::ElasticLoop { joint, joint_name, cut }
+        }
+    }
 }
 
 /// Directions in which a joint gives and is not free.

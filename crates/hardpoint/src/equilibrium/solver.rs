@@ -1,11 +1,11 @@
 //! Equilibria of a mechanism at its output times, by Newton's method on the openings.
 
 use crate::design::{BodyFixed, DesignMap, DesignVelocity};
-use crate::linalg::Elimination;
 use crate::linalg::semidefinite::is_definite;
+use crate::linalg::{Elimination, diagonalise};
 use crate::load::{ElementTurns, GivenLoads, OpeningLoads};
 use crate::measure::{DriverPoses, Instant, StepValues};
-use crate::model::{DriverId, MeasureKind, Model, UnitForce};
+use crate::model::{DriverId, ElementId, MeasureKind, Model, UnitForce};
 use crate::motion::mechanism::{Mechanism, StepRejection};
 use crate::motion::stepper::Stepper;
 use crate::motion::{GivingDirection, Stop, StopKind, advance};
@@ -14,8 +14,9 @@ use crate::sensitivity::PlanVelocity;
 use crate::space::{Pose, Twist};
 use crate::topology::Topology;
 
+use super::direction::{NamedOpenings, first_largest};
 use super::second::{Along, Curvatures, SolvedEquilibrium};
-use super::waypoints::waypoints;
+use super::waypoints::{first_undefined, waypoints};
 
 /// Correction of the openings, rad or sizes, whose square is round-off: after it they are solved.
 const QUADRATIC: f64 = 1e-9;
@@ -53,9 +54,12 @@ const LEFT_IN_MIDDLE: f64 = 0.5;
 const NEAR: f64 = 1e-6;
 /// Part of the terms that a stiffness is the sum of, below which it is round-off.
 const ROUND_OFF_OF_TERMS: f64 = 1e-13;
-/// Steps of the power iteration for the direction of least stiffness. It is the answer to an error only, and exact
-/// where one direction is much less stiff than all others.
-const POWER_STEPS: usize = 300;
+/// Difference of the stiffnesses of directions that are equally stiff, in units of the openings: round-off.
+const EQUALLY_STIFF: f64 = 1e-9;
+/// Part of the least stiffness, in rad and sizes of the mechanism, above which round-off of the others hides it.
+const HIDDEN: f64 = 0.01;
+/// Growth of a law beyond its values at the output times before and after with which it nears a pole.
+const NEARS_POLE: f64 = 100.0;
 /// A pivot of the scaled stiffness below this holds nothing.
 const HOLDS_NOTHING: f64 = 1e-12;
 /// Difference of symmetric entries of the scaled stiffness above which the forces have no potential; round-off is
@@ -68,10 +72,10 @@ enum Rejection {
     Locked(StepRejection),
     /// The mechanism does not reach the position, or Newton's method does not converge.
     NoConvergence,
-    /// The equilibrium is not stable: a motion of mainly this opening needs no work.
-    Unstable(usize),
-    /// No force resists a motion of this opening.
-    NothingHolds(usize),
+    /// The equilibrium is not stable: a motion from it needs no work.
+    Unstable,
+    /// No force resists a motion.
+    NothingHolds,
 }
 
 impl Rejection {
@@ -199,7 +203,10 @@ impl<'a> EquilibriumSolver<'a> {
         for (k, target) in targets.into_iter().enumerate() {
             // Where a law turns, a polynomial through equilibria before may lead to another one.
             let prediction = if k == 0 { self.predicted(target) } else { None };
-            certain = self.follow(one, from, target, prediction)?;
+            certain = match self.follow(one, from, target, prediction) {
+                Ok(certain) => certain,
+                Err(stop) => return Err(self.undefined_law(one, &stop, t).unwrap_or(stop)),
+            };
             from = Some(target);
         }
         if self.path.len() == PREDICTED_FROM {
@@ -533,7 +540,7 @@ impl<'a> EquilibriumSolver<'a> {
         }
         let factored = self.tangent.factor();
         self.is_regular = n == 0 || factored.pivot_ratio > HOLDS_NOTHING;
-        if self.is_regular { Ok(factored.positive) } else { Err(Rejection::NothingHolds(self.least_held())) }
+        if self.is_regular { Ok(factored.positive) } else { Err(Rejection::NothingHolds) }
     }
 
     /// True if every virtual motion from the equilibrium whose stiffness was set last needs work; false if one does
@@ -548,33 +555,102 @@ impl<'a> EquilibriumSolver<'a> {
             || (0..n).all(|a| (0..a).all(|b| (scaled(a, b) - scaled(b, a)).abs() <= UNSYMMETRIC));
         match positive && all_need_work() {
             true => Ok(true),
-            false if !positive || has_potential() => Err(Rejection::Unstable(self.least_held())),
+            false if !positive || has_potential() => Err(Rejection::Unstable),
             false => Ok(false),
         }
     }
 
-    /// The opening that the least force resists: the largest component of the direction of least stiffness, in the
-    /// units of the design configuration without loads.
-    fn least_held(&self) -> usize {
+    /// Names the direction of least stiffness at the position whose stiffness was set last, in the units of the design
+    /// configuration without loads. If no force resists it (`is_free`) it is exact.
+    fn least_stiff(&self, one: &Stepper<'_>, is_free: bool) -> Option<GivingDirection> {
         let n = self.openings.len();
         let units = self.first_units.as_ref().unwrap_or(&self.units);
         let scaled = |a: usize, b: usize| self.stiffness[a * n + b] * units[a] * units[b];
-        let symmetric = |a: usize, b: usize| 0.5 * (scaled(a, b) + scaled(b, a));
-        // No eigenvalue is above the largest sum of a row: c 1 - K has the largest one where K has the least.
-        let row = |a: usize| (0..n).map(|b| symmetric(a, b).abs()).sum::<f64>();
-        let above = (0..n).map(row).fold(0.0, f64::max);
-        // From a vector that is not symmetric.
-        let mut direction: Vec<f64> = (0..n).map(|k| 1.0 + 0.1 * k as f64).collect();
-        for _ in 0..POWER_STEPS {
-            let next =
-                |a: usize| above * direction[a] - (0..n).map(|b| symmetric(a, b) * direction[b]).sum::<f64>();
-            let next: Vec<f64> = (0..n).map(next).collect();
-            let size = next.iter().map(|x| x.abs()).fold(0.0, f64::max);
-            if size > 0.0 {
-                direction = next.into_iter().map(|x| x / size).collect();
-            }
+        let rows = |entry: &dyn Fn(usize, usize) -> f64| -> Vec<Vec<f64>> {
+            (0..n).map(|a| (0..n).map(|b| entry(a, b)).collect()).collect()
+        };
+        let mut symmetric = rows(&|a, b| 0.5 * (scaled(a, b) + scaled(b, a)));
+        let mut vectors = rows(&|a, b| f64::from(u8::from(a == b)));
+        diagonalise(&mut symmetric, &mut vectors, n);
+        let least = (0..n).map(|k| symmetric[k][k]).fold(f64::INFINITY, f64::min);
+        vectors = (0..n)
+            .filter(|k| symmetric[*k][*k] <= least + EQUALLY_STIFF)
+            .map(|k| vectors[k].clone())
+            .collect();
+        // Of several directions that with the most of a single opening: the projection of that opening on them.
+        let share = |k: usize| vectors.iter().map(|v| v[k] * v[k]).sum();
+        let mainly = first_largest((0..n).map(share))?;
+        let speed = |k: usize| units[k] * vectors.iter().map(|v| v[mainly] * v[k]).sum::<f64>();
+        self.name(one, &(0..n).map(speed).collect::<Vec<_>>(), is_free)
+    }
+
+    /// Names a motion in which the openings have these speeds, at the position whose stiffness was set last.
+    fn name(&self, one: &Stepper<'_>, speeds: &[f64], is_free: bool) -> Option<GivingDirection> {
+        let Mechanism { state, driver_units, .. } = &one.mechanism;
+        let twist = |b: usize| {
+            let openings = self.loads.unit_twists().zip(speeds);
+            openings.fold(Twist::ZERO, |sum, (w, v)| w[b].times_plus(*v, sum))
+        };
+        let twists: Vec<Twist> = (0..self.model.bodies.len()).map(twist).collect();
+        let points = self.model.points.iter().zip(&self.fixed.points);
+        let global = points.map(|(point, at)| match point.body.0 {
+            0 => at.value(),
+            body => state.pose[body].point(at.value()),
+        });
+        let named = NamedOpenings {
+            model: self.model,
+            openings: self.openings,
+            own_drivers: self.own_drivers,
+            units: driver_units,
+            points: global.collect(),
+            size: self.fixed.size,
+        };
+        named.name(speeds, &twists, is_free)
+    }
+
+    /// The stiffest direction, if round-off of its force hides how the least stiff one is held.
+    fn too_stiff(&self, one: &Stepper<'_>) -> Option<GivingDirection> {
+        let n = self.openings.len();
+        let first = self.first_units.as_ref()?;
+        // In rad and sizes, a stiffness is an energy.
+        let unit = |a: usize| one.mechanism.driver_units[self.openings[a].0];
+        let least = (0..n).map(|a| (unit(a) / first[a]).powi(2)).fold(f64::INFINITY, f64::min);
+        let own = |a: usize| self.stiffness[a * n + a].abs() * unit(a).powi(2);
+        let terms = |a: usize| self.terms[a] * unit(a).powi(2);
+        let is_known = |a: usize| own(a) > ROUND_OFF_OF_TERMS * terms(a);
+        let stiffest = first_largest((0..n).map(|a| if is_known(a) { own(a) } else { 0.0 }))?;
+        // Of positions, as a force; and of the terms of a stiffness that is nothing beside them.
+        let of_positions = f64::EPSILON * own(stiffest);
+        let of_terms = (0..n).filter(|a| !is_known(*a)).map(|a| ROUND_OFF_OF_TERMS * terms(a));
+        let hides = of_terms.fold(of_positions, f64::max) >= HIDDEN * least;
+        let alone = (0..n).map(|a| if a == stiffest { 1.0 } else { 0.0 });
+        if hides { self.name(one, &alone.collect::<Vec<_>>(), true) } else { None }
+    }
+
+    /// The end of the way to the output time t by a law that has no value right after it, or that grows there without
+    /// bound; `stop` is the end as the loads show it.
+    fn undefined_law(&self, one: &Stepper<'_>, stop: &Stop, t: f64) -> Option<Box<Stop>> {
+        let from = self.path.last()?.time;
+        if matches!(stop.kind, StopKind::Locked { .. }) {
+            return None;
         }
-        (0..n).fold(0, |best, k| if direction[k].abs() > direction[best].abs() { k } else { best })
+        let begin = stop.failed_time;
+        // Beyond the shortest step that failed.
+        let end = f64::min(begin + 2.0 * SHORTEST * (t - from), t);
+        let of_driver =
+            |d: &DriverId| (StopKind::LawNotFinite { driver: *d }, one.mechanism.parts.law_of(d.0));
+        let of_loads = self.model.elements.iter().enumerate().filter_map(|(e, element)| {
+            Some((StopKind::LoadNotFinite { force: ElementId(e) }, element.kind.law(self.model)?))
+        });
+        self.held.iter().map(of_driver).chain(of_loads).find_map(|(kind, law)| {
+            let value = |t: f64| law.at(t).value().abs();
+            if !value(end).is_finite() {
+                return Some(self.stop_as(kind, begin));
+            }
+            let nears_pole = value(begin) >= NEARS_POLE * f64::max(value(from), value(t));
+            let pole = first_undefined(law, [begin, t]).filter(|_| nears_pole)?;
+            Some(self.stop_as(kind, pole))
+        })
     }
 
     /// Sets the derivatives at the equilibrium that was found last, unless they are set.
@@ -738,13 +814,13 @@ impl<'a> EquilibriumSolver<'a> {
         found
     }
 
-    /// The opening that nothing holds in the design configuration without loads, if there is one.
-    fn unheld(&mut self, one: &mut Stepper<'_>) -> Option<usize> {
-        advance::move_at_rest(one, &self.last.drivers).ok()?;
-        match self.prepare_with(one, &GivenLoads::none(self.model)) {
-            Err(Rejection::NothingHolds(k)) => Some(k),
-            Err(Rejection::Locked(_) | Rejection::NoConvergence | Rejection::Unstable(_)) | Ok(_) => None,
-        }
+    /// Sets the stiffness in the design configuration without loads. True if nothing holds a direction there.
+    fn is_unheld(&mut self, one: &mut Stepper<'_>) -> bool {
+        advance::move_at_rest(one, &self.last.drivers).is_ok()
+            && match self.prepare_with(one, &GivenLoads::none(self.model)) {
+                Err(Rejection::NothingHolds) => true,
+                Err(Rejection::Locked(_) | Rejection::NoConvergence | Rejection::Unstable) | Ok(_) => false,
+            }
     }
 
     /// Reason why the way to the equilibrium at time t, from that at time `from`, ends after a part of it.
@@ -755,55 +831,54 @@ impl<'a> EquilibriumSolver<'a> {
         done: f64,
         rejection: Rejection,
     ) -> Box<Stop> {
-        let unheld = if self.path.is_empty() && done == 0.0 { self.unheld(one) } else { None };
-        let at_output = self.path.last();
-        let last_time = at_output.map(|passed| passed.time);
         let failed_time = from.map_or(t, |from| from + (t - from) * done);
-        let drivers = at_output.map_or(&self.last.drivers, |passed| &passed.drivers).clone();
-        let rejection = match (rejection, unheld) {
-            (rejection @ Rejection::Locked(_), _) | (rejection, None) => rejection,
-            (Rejection::NothingHolds(_) | Rejection::NoConvergence | Rejection::Unstable(_), Some(k)) => {
-                Rejection::NothingHolds(k)
+        let begins = self.path.is_empty() && done == 0.0;
+        if let Rejection::Locked(rejection) = rejection {
+            return self.stop_as(advance::stop_at_rest(one, t, rejection).kind, failed_time);
+        }
+        // Named before the position changes.
+        let least_stiff = self.least_stiff(one, begins);
+        let too_stiff = self.too_stiff(one);
+        let is_unheld = begins && self.is_unheld(one);
+        let named = if is_unheld {
+            let too_stiff = self.too_stiff(one).map(|direction| StopKind::TooStiff { direction });
+            too_stiff
+                .or_else(|| self.least_stiff(one, true).map(|direction| StopKind::NothingHolds { direction }))
+        } else if let Some(direction) = too_stiff {
+            Some(StopKind::TooStiff { direction })
+        } else {
+            match (rejection, least_stiff) {
+                (Rejection::NothingHolds, Some(direction)) if begins => {
+                    Some(StopKind::NothingHolds { direction })
+                }
+                // A stiffness that vanishes on the way has held all directions before.
+                (Rejection::NothingHolds | Rejection::Unstable, Some(direction)) => {
+                    Some(StopKind::Unstable { direction })
+                }
+                (Rejection::NoConvergence | Rejection::Locked(_), _) | (_, None) => None,
             }
         };
-        let kind = match (rejection, last_time) {
-            (Rejection::Locked(rejection), _) => advance::stop_at_rest(one, t, rejection).kind,
-            (Rejection::NothingHolds(k), None) if done == 0.0 => {
-                StopKind::NothingHolds { direction: self.direction(self.openings[k]) }
-            }
-            (Rejection::NoConvergence, None) => StopKind::LimitLoad { part: done },
-            (Rejection::NoConvergence, Some(_)) => StopKind::NoEquilibrium,
-            // A stiffness that vanishes on the way has held all directions before.
-            (Rejection::NothingHolds(k) | Rejection::Unstable(k), _) => {
-                StopKind::Unstable { direction: self.direction(self.openings[k]) }
-            }
-        };
+        let kind = named.unwrap_or(match self.path.is_empty() {
+            true => StopKind::LimitLoad { part: done },
+            false => StopKind::NoEquilibrium,
+        });
+        self.stop_as(kind, failed_time)
+    }
+
+    /// End of the run for this reason; the results up to the last output time are kept.
+    fn stop_as(&self, kind: StopKind, failed_time: f64) -> Box<Stop> {
+        let at_output = self.path.last();
         Box::new(Stop {
             kind,
-            last_time,
+            last_time: at_output.map(|passed| passed.time),
             failed_time,
-            drivers,
+            drivers: at_output.map_or(&self.last.drivers, |passed| &passed.drivers).clone(),
             block: None,
             pivot_ratio: 1.0,
             joints: Vec::new(),
             remains: Vec::new(),
             closed: None,
         })
-    }
-
-    /// Returns the direction of an opening, as the user knows it.
-    fn direction(&self, opening: DriverId) -> GivingDirection {
-        let driver = &self.model.drivers[opening.0];
-        let joint = &self.model.joints[driver.joint.0];
-        let along = joint.kind.coordinates[driver.coordinate].name;
-        // Released drivers come first, then openings of joints, some of which only place a body.
-        if opening.0 < self.own_drivers {
-            GivingDirection::Driver(opening)
-        } else if joint.unnamed {
-            GivingDirection::Body(joint.bodies[1], along)
-        } else {
-            GivingDirection::Joint(driver.joint, along)
-        }
     }
 }
 

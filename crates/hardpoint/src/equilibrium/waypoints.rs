@@ -22,6 +22,23 @@ const BEND: f64 = 0.01;
 /// Length of the shortest step, as a fraction of that between the output times, for that reason alone.
 const SHORTEST_BEND: f64 = 1.0 / 64.0;
 
+/// Time between two times, nearly, at which a law first has no value: that of a pole, or the end of its domain.
+pub(super) fn first_undefined(law: &Law, [from, to]: [f64; 2]) -> Option<f64> {
+    let mut open = vec![[from, to]];
+    for _ in 0..MOST_DIVIDED {
+        let [a, b] = open.pop()?;
+        if law.over(a, b).value.is_bounded() {
+            continue;
+        }
+        let middle = 0.5 * (a + b);
+        if b - a <= SHORTEST * (to - from) || middle <= a || b <= middle {
+            return Some(b);
+        }
+        open.extend([[middle, b], [a, middle]]);
+    }
+    None
+}
+
 /// A law over an interval of time, with the size of its values there.
 struct ChangingLaw<'l> {
     law: &'l Law,
@@ -152,6 +169,26 @@ mod tests {
             for (found, expected) in found.iter().zip(expected) {
                 // An error of the time of 1e-4 is one of 1e-8 / 2 of the curvature.
                 assert!((found - expected).abs() < 1e-4, "{text}: {found}");
+            }
+        }
+    }
+
+    #[test]
+    fn poles_and_ends_of_domains_are_found() {
+        for (text, expected) in [
+            ("1/(t - 0.3)", Some(0.3)),
+            ("1/(t - 0.3)^2 + 1/(t - 0.7)", Some(0.3)),
+            ("tan(pi*t/0.7)", Some(0.35)),
+            ("sqrt(0.6 - t)", Some(0.6)),
+            // Their bounds over the whole interval are infinite, but none of their values is.
+            ("1/(t^2 - t + 0.3)", None),
+            ("1/(t + 1)", None),
+            ("sin(20*t)", None),
+        ] {
+            let found = first_undefined(&Law::parse(text).unwrap(), [0.0, 1.0]);
+            assert_eq!(found.is_some(), expected.is_some(), "{text}: {found:?}");
+            for (found, expected) in found.into_iter().zip(expected) {
+                assert!((found - expected).abs() < 1e-11, "{text}: {found}");
             }
         }
     }

@@ -9,6 +9,7 @@ mod rank;
 pub mod semidefinite;
 mod sparse;
 mod spline;
+mod symmetric;
 
 pub(crate) use factors::{Factors, LARGEST_DENSE};
 pub use least_squares::{folded_rows, least_squares};
@@ -16,3 +17,4 @@ pub(crate) use matrix::{Elimination, MOST_GROWTH, Watched};
 pub(crate) use monotone::monotone;
 pub(crate) use rank::FullPivot;
 pub(crate) use spline::{Basis, EndKind, Segment, hermite, segment_at};
+pub(crate) use symmetric::diagonalise;

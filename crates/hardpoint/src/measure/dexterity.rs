@@ -8,15 +8,12 @@
 //! `s_k = abs(J v_k)` with a constant v_k has its first derivatives (Gosselin 1990; with velocities of points instead
 //! of twists the entries of J have one unit).
 
+use crate::linalg::diagonalise;
 use crate::model::JacobianValue;
 use crate::number::{self, Real};
 use crate::space::Vec3;
 
 const MOST_DRIVERS: usize = JacobianValue::MOST_DRIVERS;
-/// Rotations of Jacobi's method stop where the entries beside the diagonal are below this fraction of it.
-const DIAGONAL: f64 = 1e-16;
-/// Maximum number of sweeps of Jacobi's method: it converges quadratically, mostly in six.
-const SWEEPS: usize = 30;
 
 type Square = [[f64; MOST_DRIVERS]; MOST_DRIVERS];
 
@@ -59,30 +56,7 @@ pub(super) fn dexterity<T: Real>(
 /// Unit eigenvectors of a symmetric matrix of n rows, by Jacobi's method; those of large eigenvalues first.
 fn by_size(mut a: Square, n: usize) -> Square {
     let mut vectors: Square = std::array::from_fn(|j| std::array::from_fn(|k| f64::from(u8::from(j == k))));
-    for _ in 0..SWEEPS {
-        let mut is_diagonal = true;
-        for (p, q) in (0..n).flat_map(|p| (p + 1..n).map(move |q| (p, q))) {
-            if a[p][q].abs() <= DIAGONAL * (a[p][p] * a[q][q]).sqrt() {
-                continue;
-            }
-            is_diagonal = false;
-            let theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
-            let t = theta.signum() / (theta.abs() + theta.hypot(1.0));
-            let cos = 1.0 / t.hypot(1.0);
-            let sin = t * cos;
-            let turned = |x: f64, y: f64| [cos * x - sin * y, sin * x + cos * y];
-            for row in &mut a {
-                [row[p], row[q]] = turned(row[p], row[q]);
-            }
-            for k in 0..n {
-                [a[p][k], a[q][k]] = turned(a[p][k], a[q][k]);
-                [vectors[p][k], vectors[q][k]] = turned(vectors[p][k], vectors[q][k]);
-            }
-        }
-        if is_diagonal {
-            break;
-        }
-    }
+    diagonalise(&mut a, &mut vectors, n);
     let mut order: [usize; MOST_DRIVERS] = std::array::from_fn(|k| k);
     order[..n].sort_by(|j, k| a[*k][*k].total_cmp(&a[*j][*j]));
     number::each(&order, |k| vectors[k])

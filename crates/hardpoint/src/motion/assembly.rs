@@ -144,6 +144,7 @@ fn is_searched(m: &Mechanism<'_>, stop: &Stop) -> bool {
     if matches!(
         stop.kind,
         StopKind::LawNotFinite { .. }
+            | StopKind::LoadNotFinite { .. }
             | StopKind::FormulaNotFinite { .. }
             | StopKind::TooFar { .. }
             | StopKind::Interrupted

@@ -45,7 +45,7 @@ pub use execution::{Execution, StepMethod};
 pub use gap::{Assembly, AssemblyShift, Closing, Gap};
 pub use jerk::BodyJerk;
 pub use margin::Margin;
-pub use stop::{GivingDirection, Stop, StopKind};
+pub use stop::{AxisMotion, GivingDirection, Stop, StopKind};
 pub use tube::{ProvenMotion, TubeFailure};
 
 use kinematics::State;

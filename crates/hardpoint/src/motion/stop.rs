@@ -1,7 +1,8 @@
 //! Reason why a motion ended before its last output time.
 
 use crate::joint::Quantity;
-use crate::model::{BodyId, DriverId, JointId, LimitEnd, Model};
+use crate::model::{BodyId, DriverId, ElementId, HardpointId, JointId, LimitEnd, Model};
+use crate::space::Vec3;
 use crate::topology::BlockId;
 
 use super::gap::{Gap, SINGULAR_DRAWING};
@@ -52,6 +53,11 @@ pub enum StopKind {
         /// The driver.
         driver: DriverId,
     },
+    /// The law of a load has no finite value (HP0404).
+    LoadNotFinite {
+        /// The force.
+        force: ElementId,
+    },
     /// A formula of the design has no finite value (HP0412).
     FormulaNotFinite {
         /// Index in [`Model::formulas`].
@@ -91,17 +97,67 @@ pub enum StopKind {
         /// The direction in which the mechanism moves away.
         direction: GivingDirection,
     },
+    /// A direction is so stiff that round-off of the positions hides the other stiffnesses (HP0425).
+    TooStiff {
+        /// The direction.
+        direction: GivingDirection,
+    },
 }
 
 /// Direction in which a mechanism gives under load.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum GivingDirection {
     /// A coordinate of a joint, by its name.
     Joint(JointId, &'static str),
-    /// A coordinate of a body that springs alone hold, relative to ground.
-    Body(BodyId, &'static str),
+    /// A motion of the second body of a joint relative to the first, in several coordinates of the joint.
+    JointMotion(JointId, AxisMotion),
+    /// A motion, relative to ground, of a body that springs alone hold.
+    Body(BodyId, AxisMotion),
     /// A released driver.
     Driver(DriverId),
+}
+
+/// A small motion about or along an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AxisMotion {
+    /// Direction of the axis in ground, a unit vector of either sense.
+    pub axis: Vec3,
+    /// True if it is a rotation about the axis.
+    pub rotates: bool,
+    /// True if it is a translation along the axis.
+    pub slides: bool,
+    /// A named hardpoint on the axis of a rotation.
+    pub through: Option<HardpointId>,
+}
+
+/// Components of a direction beside an axis that are not written: it is named by the axis.
+const ALONG_AXIS: f64 = 5e-4;
+
+impl AxisMotion {
+    /// In words; `of` says whose axes x, y and z are.
+    fn words(self, model: &Model, of: &str) -> String {
+        let [x, y, z] = self.axis.to_array();
+        let beside = [f64::hypot(y, z), f64::hypot(x, z), f64::hypot(x, y)];
+        let axis = match beside.iter().position(|beside| *beside <= ALONG_AXIS) {
+            Some(k) => format!("{of}{}", ["x", "y", "z"][k]),
+            None => {
+                // Of the two senses that with a positive largest component.
+                let largest =
+                    [x, y, z].into_iter().fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a });
+                // No zero is written as -0.
+                let digits = |c: f64| (1e3 * c * largest.signum()).round() / 1e3 + 0.0;
+                let [x, y, z] = [x, y, z].map(digits);
+                format!("{of}direction [{x}, {y}, {z}]")
+            }
+        };
+        let how = match (self.rotates, self.slides) {
+            (true, true) => "about and along",
+            (true, false) => "about",
+            (false, _) => "along",
+        };
+        let through = self.through.map(|h| format!(" through `{}`", model.hardpoints[h.0].name));
+        format!("{how} {axis}{}", through.unwrap_or_default())
+    }
 }
 
 impl GivingDirection {
@@ -118,7 +174,12 @@ impl GivingDirection {
             Self::Joint(joint, coordinate) => {
                 format!("the {coordinate} of joint `{}`", model.joints[joint.0].name)
             }
-            Self::Body(body, axis) => format!("body `{}` {}", model.bodies[body.0].name, along(axis)),
+            Self::JointMotion(joint, motion) => {
+                format!("joint `{}` {}", model.joints[joint.0].name, motion.words(model, "global "))
+            }
+            Self::Body(body, motion) => {
+                format!("body `{}` {}", model.bodies[body.0].name, motion.words(model, ""))
+            }
             Self::Driver(driver) => format!("driver `{}`", model.drivers[driver.0].name),
         }
     }
@@ -131,7 +192,7 @@ impl Stop {
             StopKind::Limit => "HP0401",
             StopKind::BranchChange => "HP0402",
             StopKind::Locked { .. } => "HP0403",
-            StopKind::LawNotFinite { .. } => "HP0404",
+            StopKind::LawNotFinite { .. } | StopKind::LoadNotFinite { .. } => "HP0404",
             StopKind::FormulaNotFinite { .. } => "HP0412",
             StopKind::JointLimit { begins_beyond: true, .. } => "HP0267",
             StopKind::JointLimit { begins_beyond: false, .. } => "HP0268",
@@ -142,6 +203,7 @@ impl Stop {
             StopKind::LimitLoad { .. } => "HP0422",
             StopKind::NoEquilibrium => "HP0423",
             StopKind::Unstable { .. } => "HP0424",
+            StopKind::TooStiff { .. } => "HP0425",
         }
     }
 
@@ -176,6 +238,12 @@ impl Stop {
                     model.drivers[driver.0].name
                 )
             }
+            StopKind::LoadNotFinite { force } => {
+                format!(
+                    "the law of force `{}` has no finite value at t = {t:.6} s",
+                    model.elements[force.0].name
+                )
+            }
             StopKind::FormulaNotFinite { formula } => {
                 format!(
                     "the expression for {} has no finite value in this design",
@@ -203,6 +271,10 @@ impl Stop {
             StopKind::Unstable { direction } => {
                 format!("the equilibrium becomes unstable at t = {t:.6} s along {}", direction.words(model))
             }
+            StopKind::TooStiff { direction } => format!(
+                "the equilibrium cannot be solved: the stiffness of {} is too large beside the others",
+                direction.words(model)
+            ),
         }
     }
 
@@ -216,6 +288,9 @@ impl Stop {
             }
             StopKind::LawNotFinite { driver } => {
                 format!("driver `{}` has no finite value", model.drivers[driver.0].name)
+            }
+            StopKind::LoadNotFinite { force } => {
+                format!("the law of force `{}` has no finite value", model.elements[force.0].name)
             }
             StopKind::TooFar { driver } => {
                 format!("driver `{}` moves too far to be followed", model.drivers[driver.0].name)
@@ -231,6 +306,7 @@ impl Stop {
             }
             StopKind::NothingHolds { .. }
             | StopKind::LimitLoad { .. }
+            | StopKind::TooStiff { .. }
             | StopKind::FormulaNotFinite { .. }
             | StopKind::DoesNotAssemble
             | StopKind::Locked { .. } => self.headline(model),
@@ -272,7 +348,9 @@ impl Stop {
                 "change the lengths or places of these joints by at least what stays open, or give one of them more \
                  freedom"
             }
-            StopKind::LawNotFinite { .. } => "change the law, or end the run before that time",
+            StopKind::LawNotFinite { .. } | StopKind::LoadNotFinite { .. } => {
+                "change the law, or end the run before that time"
+            }
             StopKind::FormulaNotFinite { .. } => {
                 "change the design less, or narrow the bounds of its variables: the expression divides by zero or takes a \
                  root of a negative number there"
@@ -299,6 +377,10 @@ impl Stop {
             }
             StopKind::Unstable { .. } => {
                 "the forces push the mechanism away from its position: reduce them, or stiffen that direction"
+            }
+            StopKind::TooStiff { .. } => {
+                "round-off of the positions times this stiffness is a force that hides those of the others: reduce it to a \
+                 million times theirs at most, or make the direction rigid"
             }
         })
     }

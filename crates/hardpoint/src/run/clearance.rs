@@ -6,7 +6,7 @@
 use crate::clearance::{ChangingBodies, MovingBodies, PlacedShapes};
 use crate::design::{BodyFixed, ShapeGeometry};
 use crate::model::{BodyId, Clearance, ClearanceId, Model, PointId, Shape, ShapeId, ShapeKind, ShapePair};
-use crate::motion::{BodyState, Motion, Stop};
+use crate::motion::{BodyState, Motion, Stop, StopKind};
 use crate::number::{Dual, Jet, Rates};
 use crate::space::Vec3;
 
@@ -229,6 +229,9 @@ impl Analysis<'_> {
 
     /// Solves the motion of a design, and locates all minima and contacts of the pairs of all clearances, with their
     /// derivatives by the design variables.
+    ///
+    /// If the caller [ends](Analysis::ended_by) the search, its stop is [`Interrupted`](StopKind::Interrupted): minima
+    /// and contacts that were not located yet are those of the times that were solved, without derivatives.
     pub fn clearances(&self, design: &[f64]) -> Clearances {
         let model = self.model();
         let pairs = model.shape_pairs();
@@ -246,11 +249,12 @@ impl Analysis<'_> {
             follows_all |= pass > 0 && motion.len() < times.len();
             curves.add(self, design, &motion);
             let plateaus = plateaus.get_or_insert_with(|| curves.plateaus());
-            located = curves.locate(plateaus, &curves.overlaps());
+            let is_ended = self.is_ended();
+            located = curves.locate(plateaus, &curves.overlaps(), is_ended);
             // A motion that ends early is followed up to its end.
             let end = stop.and_then(|stop| stop.last_time).filter(|_| pass == 0);
             located.add.extend(end.filter(|end| curves.times.last().is_some_and(|last| last < end)));
-            if located.add.is_empty() {
+            if located.add.is_empty() || is_ended {
                 break;
             }
             // Further times are solved by themselves from the first one on; beside all others only at equilibria, which
@@ -270,6 +274,11 @@ impl Analysis<'_> {
         let mut solution = self.motion_at(&events, design, true);
         curves.add(self, design, &solution.motion);
         solution.stop = solution.stop.or(first_stop);
+        if solution.stop.as_ref().is_some_and(|stop| stop.kind == StopKind::Interrupted) {
+            let is_solved = |t: &&f64| index_of(&curves.times, **t).is_some();
+            let solved = model.times.iter().take_while(is_solved).count();
+            solution.stop = Some(self.stopped(StopKind::Interrupted, solved));
+        }
         self.results(design, &curves, &located, &solution)
     }
 
@@ -291,9 +300,9 @@ impl Analysis<'_> {
         let pair_of = |(p, shapes): (usize, &[ShapeId; 2])| {
             let samples = &curves.samples[p];
             let fastest = samples.iter().map(|s| s.distance[1].abs()).fold(0.0, f64::max);
-            let derivatives = |time: f64| {
-                let k = index_of(&solution.motion.times, time)?;
-                Some(self.distance_derivatives(design, *shapes, solution, k))
+            let derivatives = |time: f64| match index_of(&solution.motion.times, time) {
+                Some(k) => Some(self.distance_derivatives(design, *shapes, solution, k)),
+                None => self.is_ended().then(|| vec![f64::NAN; self.model().variables.len()]),
             };
             let at = |time: f64| Some(samples[index_of(&curves.times, time)?]);
             let (mut minima, mut contacts) = (Vec::new(), Vec::new());
@@ -499,8 +508,10 @@ impl<'m> Curves<'m> {
         let new: Vec<usize> =
             (0..motion.len()).filter(|k| index_of(&self.times, motion.times[*k]).is_none()).collect();
         let posed = PosedMotion::of(analysis, design, motion);
-        let found = posed.distances(self.pairs, new.iter().copied());
-        for (n, k) in new.into_iter().enumerate() {
+        let mut known = 0;
+        let until_ended = new.iter().take_while(|_| !analysis.is_ended()).inspect(|_| known += 1);
+        let found = posed.distances(self.pairs, until_ended.copied());
+        for (n, k) in new.into_iter().take(known).enumerate() {
             let time = motion.times[k];
             let place = self.times.partition_point(|t| *t < time);
             self.times.insert(place, time);
@@ -591,16 +602,17 @@ impl<'m> Curves<'m> {
         Plateau { within, from: times[deep.unwrap_or(first)], value, is_lowest, is_inside }
     }
 
-    /// The minima and contacts that are located, and the times at which the motion must be solved for the others.
-    fn locate(&self, plateaus: &[Vec<Plateau>], overlaps: &[Vec<Plateau>]) -> Located {
+    /// The minima and contacts that are located, and the times at which the motion must be solved for the others. After
+    /// the last pass (`is_last`), contacts are at the nearest times that were solved.
+    fn locate(&self, plateaus: &[Vec<Plateau>], overlaps: &[Vec<Plateau>], is_last: bool) -> Located {
         let mut located = Located { constant: vec![false; plateaus.len()], ..Located::default() };
         for (p, (plateaus, overlaps)) in plateaus.iter().zip(overlaps).enumerate() {
-            self.locate_pair(p, &[&plateaus[..], overlaps].concat(), &mut located);
+            self.locate_pair(p, &[&plateaus[..], overlaps].concat(), is_last, &mut located);
         }
         located
     }
 
-    fn locate_pair(&self, p: usize, plateaus: &[Plateau], located: &mut Located) {
+    fn locate_pair(&self, p: usize, plateaus: &[Plateau], is_last: bool, located: &mut Located) {
         let (times, samples) = (&self.times, &self.samples[p]);
         let Some(last) = samples.len().checked_sub(1) else { return };
         let span = times[last] - times[0];
@@ -768,7 +780,8 @@ impl<'m> Curves<'m> {
             let other_is_nearer = if is_deep == [false; 2] { a.abs() > b.abs() } else { is_deep[0] };
             let near = k + usize::from(other_is_nearer);
             let [d, rate, _] = samples[near].distance;
-            let is_there = d.abs() <= LOCATED * span * rate.abs() || d.abs() <= f64::EPSILON * self.size;
+            let is_there =
+                is_last || d.abs() <= LOCATED * span * rate.abs() || d.abs() <= f64::EPSILON * self.size;
             if is_there || times[k + 1] - times[k] <= LOCATED * span {
                 event(times[near], EventKind::Contact(begins));
                 continue;
@@ -924,7 +937,7 @@ mod tests {
             reaches: vec![vec![None; samples.len()]],
             samples: vec![samples],
         };
-        let located = curves.locate(&curves.plateaus(), &curves.overlaps());
+        let located = curves.locate(&curves.plateaus(), &curves.overlaps(), false);
         assert_eq!(located.add, Vec::<f64>::new());
         let minima: Vec<f64> = located.events.iter().map(|event| event.time).collect();
         assert_eq!(minima, [0.7]);

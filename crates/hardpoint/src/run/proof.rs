@@ -15,7 +15,7 @@ use crate::model::{Model, ShapeId, ShapeKind};
 use crate::motion::parts::PlanGeometry;
 use crate::motion::stepper::Stepper;
 use crate::motion::tube::{Instant, Slab, SolvedPosition};
-use crate::motion::{ProvenMotion, Stop, TubeFailure, advance};
+use crate::motion::{ProvenMotion, Stop, StopKind, TubeFailure, advance};
 use crate::number::{Interval, Jet, Rates};
 use crate::space::{Mat3, Pose, Real, Vec3};
 
@@ -59,6 +59,10 @@ impl Analysis<'_> {
         let within = self.times_within().into_iter();
         let times: Vec<f64> = within.take_while(is_before).chain(of_limit).collect();
         for (k, &t) in times.iter().enumerate() {
+            if self.is_ended() {
+                stop = Some(self.stopped(StopKind::Interrupted, 0));
+                break;
+            }
             let moved = if k == 0 { advance::start(&mut one, t) } else { advance::advance(&mut one, t) };
             if let Err(reason) = moved {
                 // The last time that was reached is an output of the proof.
@@ -144,10 +148,13 @@ pub enum ProofFailure {
     },
     /// The motion has no proven bounds there.
     Motion(TubeFailure),
+    /// The caller [ended](Analysis::ended_by) the proof.
+    Interrupted,
 }
 
 /// Proves clearances of one motion: the bounds of the motion are computed once for all pairs of shapes.
 pub struct ClearanceProver<'a> {
+    analysis: &'a Analysis<'a>,
     model: &'a Model,
     motion: ProvenMotion<'a>,
     /// Size of the mechanism, m.
@@ -166,7 +173,7 @@ impl Analysis<'_> {
         let fixed: BodyFixed<f64> = self.design_map().fixed(&model.whole(design));
         let constants = fixed.map(|x| Jet::constant(Interval::constant(x)));
         let moving = fixed.map(Jet::constant);
-        Some(ClearanceProver { model, motion, size: fixed.size, moving, constants, stop })
+        Some(ClearanceProver { analysis: self, model, motion, size: fixed.size, moving, constants, stop })
     }
 }
 
@@ -263,6 +270,10 @@ impl<'a> ClearanceProver<'a> {
         let most = MOST_BOUNDS.max(2 * parts.len());
         while let Some([from, to]) = parts.pop() {
             bounds += 1;
+            if pair.prover.analysis.is_ended() {
+                let (bound, reason) = (f64::NEG_INFINITY, ProofFailure::Interrupted);
+                return ClearanceProof::NotProved { from, to, bound, reason };
+            }
             let failed = match pair.bound([from, to]) {
                 Ok(bound) if bound >= pair.claim => {
                     slabs += 1;
@@ -281,7 +292,8 @@ impl<'a> ClearanceProver<'a> {
                 ProofFailure::Nearer { .. }
                 | ProofFailure::CoresMeet
                 | ProofFailure::WithinRing
-                | ProofFailure::Mesh { .. } => false,
+                | ProofFailure::Mesh { .. }
+                | ProofFailure::Interrupted => false,
                 ProofFailure::Unresolved => true,
                 ProofFailure::Motion(reason) => reason.may_be_halved(),
             };

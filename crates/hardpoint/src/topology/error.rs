@@ -4,7 +4,7 @@ use crate::draft::some_of;
 use crate::model::{BodyId, DriverId, JointId, Model};
 
 use super::blocks::SparseRow;
-use super::{Closure, Formulation, Link, RowId, Topology};
+use super::{Closure, CutReason, Formulation, Link, RowId, Topology};
 
 /// Error of a mechanism that its drivers cannot drive.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -57,13 +57,15 @@ pub enum TopologyError {
         /// Names of the bodies in their loops.
         bodies: Vec<String>,
     },
-    /// A joint of which only some directions give closes a loop of elastic joints (HP0306).
-    #[error("joint `{joint_name}` closes a loop of elastic joints, and gives in some of its directions only")]
+    /// A joint that deflects in some of its directions only, and cannot be cut, would be cut (HP0306).
+    #[error("{}", elastic_loop_text(.joint_name, .cut))]
     ElasticLoop {
         /// The joint.
         joint: JointId,
         /// Name of the joint.
         joint_name: String,
+        /// Reason why it would be cut.
+        cut: CutReason,
     },
 }
 
@@ -76,6 +78,15 @@ fn over_driven_text(drivers: usize, mobility: usize) -> String {
 fn under_driven_text(freedom: &usize, bodies: &[String]) -> String {
     let s = if *freedom == 1 { "motion remains" } else { "motions remain" };
     format!("the mechanism is under-driven: {freedom} {s} free ({})", dozen(bodies))
+}
+
+fn elastic_loop_text(joint: &str, cut: &CutReason) -> String {
+    let why = match cut {
+        CutReason::AlwaysCut | CutReason::ClosesLoop => "closes a loop of elastic joints",
+        CutReason::Requested => "cannot be cut as requested",
+        CutReason::Absolute => "cannot be cut, as absolute coordinates require",
+    };
+    format!("joint `{joint}` {why}: it is elastic in some of its directions only")
 }
 
 /// Joins names with commas. A longer list is cut after twelve names, with the number of the others.
@@ -147,8 +158,17 @@ impl TopologyError {
                  a revolute joint, a cylindrical joint instead of a translational one)"
                     .into()
             }
-            Self::ElasticLoop { joint_name, .. } => {
-                format!("give `{joint_name}` stiffnesses in all its directions, or make another joint of the loop rigid")
+            Self::ElasticLoop { joint_name, cut, .. } => {
+                let in_all = format!("give `{joint_name}` stiffnesses in all its directions");
+                match cut {
+                    CutReason::AlwaysCut | CutReason::ClosesLoop => {
+                        format!("{in_all}, or make another joint of the loop rigid")
+                    }
+                    CutReason::Requested => format!("remove `cut = true` from `{joint_name}`, or {in_all}"),
+                    CutReason::Absolute => {
+                        "solve the model in relative coordinates: leave out the option `--absolute`".into()
+                    }
+                }
             }
         }
     }
