@@ -4,7 +4,7 @@ mod grid;
 
 use std::io::Write;
 
-use hardpoint::model::{Clearance, Dimension, Model, ShapePair};
+use hardpoint::model::{Clearance, Dimension, DriverId, Model, ShapePair};
 use hardpoint::motion::TubeFailure;
 use hardpoint::run::{
     ClearanceMinimum, ClearanceProof, ClearanceProver, Clearances, Contact, MinimumPlace, PairClearance,
@@ -84,7 +84,8 @@ record! {
     parallel: bool = found.at.is_parallel;
     /// True if the cores meet: the distance does not say how deep the shapes are in each other, and has no derivative.
     cores_meet: bool = found.at.cores_meet;
-    /// Derivatives of the distance by the design variables, the strongest first.
+    /// Derivatives of the distance by the design variables, the strongest first; empty where the motion ends early at a
+    /// time without known derivatives.
     sensitivities: Vec<ClearanceSensitivity> = sensitivities(model, units, Dimension::LENGTH, &found.d);
 }
 
@@ -260,13 +261,15 @@ record! {
     beyond: bool = clearance.beyond.is_some_and(|beyond| least.is_some_and(|at| at.distance[0] > beyond));
 }
 
-/// Values of the drivers that move, in words.
+/// Values of the drivers that move by their laws, in words; those of released drivers depend on the loads instead.
 pub(crate) fn drivers(model: &Model, units: Units, time: f64) -> String {
     let moves = |law: &hardpoint::law::Law| {
         let ends = [model.times.first(), model.times.last()].map(|t| t.copied().unwrap_or_default());
         law.over(ends[0], ends[1]).value.reach_from(law.at(ends[0]).value()) > 0.0
     };
-    let shown = model.drivers.iter().filter(|d| moves(&d.law)).map(|driver| {
+    let released = |d: usize| model.equilibrium.as_ref().is_some_and(|e| e.released.contains(&DriverId(d)));
+    let moving = model.drivers.iter().enumerate().filter(|(d, driver)| !released(*d) && moves(&driver.law));
+    let shown = moving.map(|(_, driver)| {
         let dimension = Dimension::from(model.driven(driver).quantity);
         let value = units.from_si(dimension, driver.law.at(time).value());
         format!("{} {}", driver.name, with_unit(value, &unit(units, dimension)))

@@ -1,8 +1,11 @@
 //! Diagnostics of a run: why a mechanism cannot be driven, a run ended early, or a variable has no sensitivity. Names
 //! and units are those of the model file.
 
+use std::cell::OnceCell;
+
 use hardpoint::Analysis;
 use hardpoint::joint::Quantity;
+use hardpoint::load::Loads;
 use hardpoint::model::element::ActsOn;
 use hardpoint::motion::{Closing, Motion, Stop, StopKind};
 use hardpoint::topology::TopologyError;
@@ -79,21 +82,41 @@ pub fn stop(file: &ModelFile, stop: &Stop, solved: usize, outputs: Option<&str>)
         Some(outputs) => format!("{outputs} hold the part that was solved: {solved} of {asked} steps"),
         None => format!("{solved} of {asked} steps were solved"),
     };
-    ended(file, stop, "", left)
+    ended(file, stop, "", partial(stop, left))
+}
+
+/// Diagnostic of a nominal design whose motion ended before its last output time, of a study that requires all of it.
+pub fn stop_of_nominal(file: &ModelFile, stop: &Stop) -> Diagnostic {
+    let (times, at) = (&file.model.times, rounded(stop.failed_time, 7));
+    let last = times.last().map_or(String::new(), |t| format!(", t = {} s", number(*t)));
+    let left = format!(
+        "the study was not made: the motion of the nominal design ends at t = {at} s, before its last output time{last}"
+    );
+    let mut d = ended(file, stop, "", vec![left]);
+    d.severity = Severity::Error;
+    let begins = stop.last_time.zip(times.first()).is_some_and(|(last, first)| last > *first);
+    if begins && let Some(help) = &mut d.help {
+        *help += &format!("; or end `[time]` before t = {at} s");
+    }
+    d
 }
 
 /// Diagnostic of a changed design whose motion ended before its last output time.
 pub fn stop_of_changed(file: &ModelFile, stop: &Stop, solved: usize) -> Diagnostic {
     let asked = file.model.times.len();
-    ended(
-        file,
-        stop,
-        "the changed design: ",
-        format!("{solved} of {asked} steps of the changed design were solved"),
-    )
+    let left = format!("{solved} of {asked} steps of the changed design were solved");
+    ended(file, stop, "the changed design: ", partial(stop, left))
 }
 
-fn ended(file: &ModelFile, stop: &Stop, who: &str, left: String) -> Diagnostic {
+/// Notes on the results up to a stop.
+fn partial(stop: &Stop, left: String) -> Vec<String> {
+    let at_limit = matches!(stop.kind, StopKind::JointLimit { begins_beyond: false, .. });
+    let cover =
+        "curves and metrics cover the output times up to there; limits and clearances all of the motion";
+    at_limit.then(|| cover.to_owned()).into_iter().chain([left]).collect()
+}
+
+fn ended(file: &ModelFile, stop: &Stop, who: &str, left: Vec<String>) -> Diagnostic {
     let (model, units) = (&file.model, file.units);
     let joint_name = |j: &JointId| model.joints[j.0].name.as_str();
     let place = match stop.kind {
@@ -172,12 +195,7 @@ fn ended(file: &ModelFile, stop: &Stop, who: &str, left: String) -> Diagnostic {
             rounded(stop.pivot_ratio, 2)
         ));
     }
-    if matches!(stop.kind, StopKind::JointLimit { begins_beyond: false, .. }) {
-        d = d.note(
-            "curves and metrics cover the output times up to there; limits and clearances all of the motion",
-        );
-    }
-    d = d.note(left);
+    d = left.into_iter().fold(d, Diagnostic::note);
     match stop.help() {
         Some(help) => d.help(help),
         None => d.help("run it again for the rest"),
@@ -291,7 +309,10 @@ fn loads(file: &ModelFile, course: &Course) -> Vec<Diagnostic> {
     let (model, found) = (&file.model, &course.kept);
     let has_none = |m: usize| (0..found.measured.len()).find(|k| found.measured.value(*k, m)[0].is_nan());
     // Computed only once, and only if needed.
-    let mut shared = None;
+    let solved = OnceCell::new();
+    let solved = || {
+        solved.get_or_init(|| Analysis::new(model).map(|analysis| analysis.loads(&[])).unwrap_or_default())
+    };
     let mut list = Vec::new();
     for (m, measure) in model.measures.iter().enumerate() {
         let is_compliance = measure.kind.is_compliance();
@@ -308,6 +329,11 @@ fn loads(file: &ModelFile, course: &Course) -> Vec<Diagnostic> {
         let without_length: Vec<String> = without_length.map(|e| e.name.clone()).collect();
         let with_friction = || model.elements.iter().enumerate().filter(|(_, e)| e.kind.has_friction(model));
         let has_friction = with_friction().next().is_some();
+        // Where friction is determined, it is not the reason.
+        let friction_is_known = || {
+            let Loads { times, friction_known, .. } = solved();
+            times.iter().zip(friction_known).any(|(at, known)| *at == found.motion.times[k] && *known)
+        };
         let names = |kinds: &dyn Fn(usize) -> bool| -> Vec<String> {
             with_friction().filter(|(e, _)| kinds(*e)).map(|(_, element)| element.name.clone()).collect()
         };
@@ -323,16 +349,11 @@ fn loads(file: &ModelFile, course: &Course) -> Vec<Diagnostic> {
         } else if is_compliance {
             d.note("compliant elements need a support, and redundant constraints support one another")
                 .help("release only drivers that something else supports, and remove redundant constraints: `check` names them")
-        } else if !has_friction {
+        } else if !has_friction || friction_is_known() {
             d.note("redundant constraints share it, depending on their stiffness")
                 .help("measure what is not shared (in a plane `radial`, or components in it), or remove a redundant constraint: `check` names them")
         } else {
-            let shared = shared.get_or_insert_with(|| {
-                let analysis = Analysis::new(model);
-                let loads = analysis.map(|analysis| analysis.loads(&[])).unwrap_or_default();
-                [loads.shared_friction, loads.ambiguous_friction]
-            });
-            let [shared, ambiguous] = &*shared;
+            let Loads { shared_friction: shared, ambiguous_friction: ambiguous, .. } = solved();
             if !ambiguous.is_empty() {
                 let of = names(&|e| ambiguous.iter().any(|s| s.0 == e));
                 d.note(format!("the friction of {} has two solutions there: it is so large that it generates the normal forces it needs", names_of(&of)))

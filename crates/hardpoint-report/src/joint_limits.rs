@@ -26,7 +26,8 @@ record! {
     time: f64 = found.time;
     /// Values of the drivers there, in words.
     drivers: String = drivers(model, units, found.time);
-    /// Derivatives of the value by the design variables, the strongest first.
+    /// Derivatives of the value by the design variables, the strongest first; empty where the motion ends early at a
+    /// time without known derivatives.
     sensitivities: Vec<ClearanceSensitivity> = sensitivities(model, units, of, &found.d);
 }
 

@@ -27,11 +27,15 @@ record! {
         let (status, message) = if tally.designs < count_asked {
             ("interrupted", format!("interrupted after {} of {count_asked} designs", tally.designs))
         } else if tally.failed == tally.designs {
-            (
-                "no_design",
-                "no design reaches the end of its motion: narrow the ranges; the reasons are listed below"
-                    .to_owned(),
-            )
+            // The nominal design is solved besides.
+            let message = match metrics.iter().all(|m| m.drawn.is_none()) {
+                true => {
+                    "no design reaches the end of its motion, not even the nominal one: end `[time]` earlier, or correct \
+                     the reasons listed below"
+                }
+                false => "no design reaches the end of its motion: narrow the ranges; the reasons are listed below",
+            };
+            ("no_design", message.to_owned())
         } else if tally.failed > 0 {
             let solved = tally.designs - tally.failed;
             ("complete", format!("{solved} of {} were solved", count(tally.designs, "design")))

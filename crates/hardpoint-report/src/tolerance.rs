@@ -407,7 +407,7 @@ pub fn nominal_stop(
 ) -> (ModelFile, Diagnostic) {
     let mut of_motion = file.clone();
     of_motion.model = motions.model(stopped.motion).clone();
-    let mut diagnostic = diagnose::stop(&of_motion, &stopped.stop, 0, None);
+    let mut diagnostic = diagnose::stop_of_nominal(&of_motion, &stopped.stop);
     if let Some(case) = case_name(&file.model, numbers[stopped.motion]) {
         diagnostic.message = format!("case `{case}`: {}", diagnostic.message);
     }

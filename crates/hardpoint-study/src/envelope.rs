@@ -296,7 +296,7 @@ pub fn envelope(
     }
     Ok(Envelope {
         is_within_error: enough && surface.deviation <= half,
-        interrupted: !(enough && surface.deviation <= half) && !more(),
+        interrupted: !(more() || enough && surface.deviation <= half),
         surface,
         poses: found.swept.len(),
         error,

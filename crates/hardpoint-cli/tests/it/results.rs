@@ -298,7 +298,7 @@ fn an_interrupted_search_of_clearances_keeps_the_times_that_were_solved() {
         }
         std::fs::remove_dir_all(bench.path("out")).unwrap();
     };
-    let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let document: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(document["interrupted"], true, "{document}");
     let pairs = document["pairs"].as_array().unwrap();
     assert!(!pairs.is_empty() && pairs.iter().all(|pair| pair["least"].is_f64()), "{document}");

@@ -1,5 +1,6 @@
 //! Tables: their keys with the declared forms and defaults, their entries, and the kinds of a table.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use hardpoint::draft::{DirectionDraft, LocationDraft};
@@ -18,7 +19,7 @@ const MOST_NAMES: usize = 10_000;
 
 impl Reader<'_> {
     /// Fields of a table; unknown keys are reported. A misspelt key is read as the intended one, so that it is reported
-    /// once and not again as missing.
+    /// once and not again as missing. If the intended one is given too, only entries are read of both.
     pub fn fields<'a>(
         &mut self,
         what: impl Into<String>,
@@ -41,8 +42,9 @@ impl Reader<'_> {
             if known(name).is_some() {
                 continue;
             }
-            let missing: Vec<_> = names().filter(|k| fields.get(k).is_none()).collect();
-            let close = closest(name, missing.iter().copied());
+            // Of equally close keys a missing one is meant.
+            let (given, missing): (Vec<_>, Vec<_>) = names().partition(|k| fields.get(k).is_some());
+            let close = closest(name, missing.into_iter().chain(given.iter().copied()));
             let what = &fields.what;
             let message = match close {
                 Some(close) => format!("unknown key `{}` in {what}; did you mean `{close}`?", shown(name)),
@@ -51,12 +53,22 @@ impl Reader<'_> {
             let list: Vec<_> = names().collect();
             let d = self.report("HP0103", key.span(), message);
             d.notes.push(format!("valid keys: {}", quoted(&list)));
-            if close.is_none() {
+            let given = close.filter(|close| given.contains(close));
+            let has_entries =
+                close.is_some_and(|close| matches!(fields.key(close).shape, Shape::Entries(..)));
+            let has_entries = has_entries && value.get_ref().is_table();
+            if let Some(given) = given {
+                d.help = Some(match has_entries {
+                    true => format!("move its entries to `{given}`"),
+                    false => format!("`{given}` is given already: remove `{}`", shown(name)),
+                });
+            } else if close.is_none() {
                 let remove = || format!("remove `{}`", shown(name));
                 d.help = Some(above_tables(name).unwrap_or_else(remove));
             }
             let at = (key.span().start, key.span().end);
-            if let Some(key) = missing.into_iter().find(|k| Some(*k) == close) {
+            if let Some(key) = names().find(|k| Some(*k) == close).filter(|_| given.is_none() || has_entries)
+            {
                 fields.list.push(Field { key, at, value });
             }
         }
@@ -289,20 +301,23 @@ impl Reader<'_> {
         key: &'static str,
         one: &str,
     ) -> Vec<(String, Range<usize>, &'a Value<'a>)> {
-        let Some(f) = table.get(key) else { return Vec::new() };
         let expected = format!("a table with one entry for each {one}");
         let mut subject = table.subject(key);
         subject.example = format!("write `[{below}{key}.NAME]` above the keys of a {one}");
-        let Some(table) = self.table(f.value, &subject, &expected) else { return Vec::new() };
-        if table.len() > MOST_ENTRIES {
-            self.too_many(f.value.span(), &format!("`{key}`"), table.len());
-            return Vec::new();
-        }
-        let mut entries = Vec::new();
-        for (name, value) in table {
-            let what = format!("the name of a {one}");
-            if let Some(short) = self.short(name.get_ref(), name.span(), &what) {
-                entries.push((short, name.span(), value));
+        let mut entries: Vec<(String, Range<usize>, &'a Value<'a>)> = Vec::new();
+        // A misspelt table may be beside the one that is meant; names that both have are of the latter.
+        let mut names = BTreeSet::new();
+        for f in table.iter().filter(|f| f.key == key) {
+            let Some(table) = self.table(f.value, &subject, &expected) else { continue };
+            if table.len() > MOST_ENTRIES {
+                self.too_many(f.value.span(), &format!("`{key}`"), table.len());
+                continue;
+            }
+            for (name, value) in table.iter().filter(|(name, _)| names.insert(name.get_ref())) {
+                let what = format!("the name of a {one}");
+                if let Some(short) = self.short(name.get_ref(), name.span(), &what) {
+                    entries.push((short, name.span(), value));
+                }
             }
         }
         entries

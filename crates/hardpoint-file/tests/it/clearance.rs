@@ -737,6 +737,93 @@ fn a_motion_that_a_limit_stops_has_the_clearances_up_to_the_limit_at_any_output_
 }
 
 #[test]
+fn a_least_distance_where_a_limit_stops_the_motion_has_the_derivative_of_re_solved_designs() {
+    // An arm turns to its stop in 0.25 s / w, while a slide goes 25 mm / w towards a stud.
+    let slide = "name = \"c\"\nunits = { length = \"mm\", angle = \"deg\" }\ntime = { end = 1.0, steps = 7 }\n\
+         parameters.w = 1\nhardpoints.S = [60, 0, 0]\nbodies = { arm = {}, slider = {} }\n[joints]\n\
+         a = { type = \"revolute\", bodies = [\"ground\", \"arm\"], at = [0, 50, 0], axis = \"z\", limits.angle = { max = 90, stop = true } }\n\
+         s = { type = \"translational\", bodies = [\"ground\", \"slider\"], at = [0, 0, 0], axis = \"x\" }\n\
+         [drivers]\na = { joint = \"a\", law = \"360*w*t\" }\ns = { joint = \"s\", law = \"100*t\" }\n[shapes]\n\
+         ball = { body = \"slider\", sphere = [0, 0, 0], radius = 3 }\nstud = { body = \"ground\", sphere = \"S\", radius = 2 }\n\
+         [clearances.c]\nbetween = [\"ball\", \"stud\"]\n[design]\nS = { move = \"S\", along = \"x\" }\n";
+    let model = model_of(slide);
+    let found = Analysis::new(&model).unwrap().clearances(&[]);
+    let least = pair(&model, &found, "c").least().unwrap();
+    assert_eq!(least.place, MinimumPlace::End);
+    assert_near(least.at.distance[0] * 1e3, 60.0 - 25.0 - 5.0, "distance");
+    let by = |name: &str| least.d[model.variable(name).unwrap_or_else(|| panic!("{name}")).0];
+    assert_near(by("w") * 1e3, 25.0, "by w");
+    assert_near(by("S"), 1.0, "by S");
+
+    // A spatial four-bar whose rocker reaches its stop: a ball on the rocker is where it is, the rod is not.
+    let linkage = "name = \"c\"\nunits = { length = \"mm\", angle = \"deg\" }\ntime = { end = 1.0, steps = 60 }\n\
+         [parameters]\nr = { value = 18, unit = \"length\" }\nspeed = 1\n\
+         [hardpoints]\nO = [-220, 0, 0]\nA = [-190, 0, 50]\nB = [45, 40, 120]\nQ = [60, 50, 0]\nS = [35, 55, 80]\n\
+         W1 = [-60, 20, 95]\nW2 = [-20, 90, 70]\n[bodies]\ncrank = {}\nrocker = {}\n[joints]\n\
+         crank = { type = \"revolute\", bodies = [\"ground\", \"crank\"], at = \"O\", axis = \"y\" }\n\
+         rod = { type = \"distance\", bodies = [\"crank\", \"rocker\"], at = [\"A\", \"B\"] }\n\
+         rocker = { type = \"revolute\", bodies = [\"ground\", \"rocker\"], at = \"Q\", axis = [0.1, 1, 0.05], limits.angle = { min = -8, max = 12, stop = true } }\n\
+         [drivers]\nmotor = { joint = \"crank\", law = \"360*speed*t + 20*sin(2*pi*t)\" }\n[shapes]\n\
+         ball = { sphere = \"S\", body = \"rocker\", radius = \"r\" }\nrodc = { capsule = \"rod\", radius = 6 }\n\
+         bar = { capsule = [\"W1\", \"W2\"], body = \"ground\", radius = 20 }\n\
+         [clearances]\nhit = { between = [\"ball\", \"bar\"] }\nrb = { between = [\"rodc\", \"bar\"] }\n[design]\n\
+         A = { move = \"A\", along = \"xyz\" }\nB = { move = \"B\", along = \"xyz\" }\nQ = { move = \"Q\", along = \"xyz\" }\n\
+         S = { move = \"S\", along = \"xyz\" }\nW2 = { move = \"W2\", along = \"xyz\" }\ntilt = { tilt = \"rocker\", about = \"x\" }\n";
+    let model = model_of(linkage);
+    let analysis = Analysis::new(&model).unwrap();
+    let ends = |design: &[f64]| {
+        let found = analysis.clearances(design);
+        let end = |name: &str| pair(&model, &found, name).minima.last().unwrap().clone();
+        [end("hit"), end("rb")]
+    };
+    let nominal = ends(&[]);
+    assert!(nominal.iter().all(|at| at.place == MinimumPlace::End));
+    for v in 0..model.variables.len() {
+        let h = 1e-5;
+        let at = |h: f64| ends(&(0..=v).map(|k| if k == v { h } else { 0.0 }).collect::<Vec<_>>());
+        let [after, before] = [at(h), at(-h)];
+        for (k, end) in nominal.iter().enumerate() {
+            let expected = (after[k].at.distance[0] - before[k].at.distance[0]) / (2.0 * h);
+            let what = format!("{} of {k}: {} instead of {expected}", model.variables[v].name, end.d[v]);
+            assert!((end.d[v] - expected).abs() < 1e-6, "{what}");
+        }
+    }
+    // What moves the crank alone moves the time, not the rocker at its stop.
+    for name in ["speed", "A_x", "A_y", "A_z"] {
+        let v = model.variable(name).unwrap_or_else(|| panic!("{name} {:?}", model.variables)).0;
+        assert!(nominal[0].d[v].abs() < 1e-12, "{name}: {}", nominal[0].d[v]);
+    }
+}
+
+/// A motion that a limit position ends, or an equilibrium that a limit of a joint ends: the time of neither has known
+/// derivatives, and so have the distances there.
+#[test]
+fn a_least_distance_at_an_end_of_unknown_time_has_no_derivative() {
+    let blocked = "name = \"c\"\nunits = { length = \"mm\", angle = \"deg\" }\ntime = { end = 1.0, steps = 30 }\nplanar = \"xy\"\n\
+         hardpoints = { A = [0, 0], B = [60, 40], C = [140, 50], D = [100, 0], S = [-200, -300] }\n\
+         bodies = { ground = [\"A\", \"D\"], crank = [\"A\", \"B\"], coupler = [\"B\", \"C\"], rocker = [\"C\", \"D\"] }\n\
+         drivers.motor = { joint = \"A\", law = \"360*t\" }\n[shapes]\n\
+         stud = { body = \"ground\", sphere = \"S\", radius = 3 }\ntip = { body = \"crank\", sphere = \"B\", radius = 3 }\n\
+         [clearances.c]\nbetween = [\"tip\", \"stud\"]\n[design]\nC = { move = \"C\", along = \"x\" }\n";
+    let at_rest = "name = \"c\"\nunits = { length = \"mm\", angle = \"deg\" }\ntime = { end = 1.0, steps = 7 }\nparameters.k = 5\n\
+         bodies = { ram = {} }\n[joints]\nslide = { type = \"translational\", bodies = [\"ground\", \"ram\"], at = [0, 0, 0], axis = \"x\", \
+         limits = { displacement = { max = 8, stop = true } } }\n[forces]\n\
+         spring = { type = \"joint_spring\", joint = \"slide\", stiffness = \"k\" }\n\
+         load = { type = \"force\", at = { body = \"ram\", at = [0, 0, 0] }, force = 50, along = \"x\", law = \"t\" }\n\
+         [shapes]\nball = { body = \"ram\", sphere = [0, 0, 0], radius = 3 }\n\
+         stud = { body = \"ground\", sphere = [30, 0, 0], radius = 2 }\n[clearances.c]\nbetween = [\"ball\", \"stud\"]\n\
+         [equilibrium]\n";
+    for text in [blocked, at_rest] {
+        let model = model_of(text);
+        let found = Analysis::new(&model).unwrap().clearances(&[]);
+        assert!(found.stop.is_some());
+        let end = pair(&model, &found, "c").minima.last().unwrap();
+        assert_eq!(end.place, MinimumPlace::End);
+        assert!(end.d[0].is_nan() && end.d.len() == 1, "{end:?}");
+    }
+}
+
+#[test]
 fn a_part_of_the_motion_in_which_the_distance_is_constant_and_greatest_has_no_minimum() {
     // While the arm points away from the wall, its fixed end is nearest: rates there are round-off of either sign. The
     // other pairs add times.

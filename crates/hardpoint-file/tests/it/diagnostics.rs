@@ -772,3 +772,26 @@ fn two_coordinates_of_a_point_are_all_three_in_a_model_without_a_plane() {
         assert!(help.starts_with("did you mean `xyz`?"), "{help}");
     }
 }
+
+/// A misspelt table beside the one that is meant is reported once, and its entries are read.
+#[test]
+fn a_misspelt_table_beside_the_right_one_has_no_consequences() {
+    for (right, wrong, help) in [
+        ("[joints.J1]", "[joint.J1]", "move its entries to `joints`"),
+        ("[measures.", "[measure.", "move its entries to `measures`"),
+    ] {
+        let other = "\n[measures.again]\ntype = \"position\"\npoint = \"P\"\nalong = \"x\"\n";
+        let text = VALID.to_owned() + other;
+        parse(&text, "x.toml").unwrap_or_else(|e| panic!("{e}"));
+        assert!(text.matches(right.split('.').next().unwrap()).count() > 1, "{right}");
+        let error = parse(&text.replacen(right, wrong, 1), "x.toml").unwrap_err();
+        let [only] = error.list() else { panic!("{error}") };
+        assert_eq!((only.code, only.help.as_deref()), ("HP0103", Some(help)), "{error}");
+        let meant = help.trim_start_matches("move its entries to ");
+        assert!(only.message.ends_with(&format!("did you mean {meant}?")), "{error}");
+    }
+    // Of a value there is nothing to move.
+    let error = parse(&VALID.replacen("steps = 100", "steps = 100\nstep = 3", 1), "x.toml").unwrap_err();
+    let [only] = error.list() else { panic!("{error}") };
+    assert_eq!(only.help.as_deref(), Some("`steps` is given already: remove `step`"));
+}

@@ -242,6 +242,68 @@ fn an_end_stop_ends_the_motion_whatever_the_output_times_and_keeps_what_is_befor
 }
 
 #[test]
+fn derivatives_at_an_end_stop_follow_the_time_at_which_it_is_reached() {
+    let text = press("mm", "deg", "limits.displacement = { max = 30, stop = true }", 20);
+    let limits = "limits = { angle = { min = -170 } } }\npin";
+    let model = model_of(&text.replace("at = \"O\" }\npin", &format!("at = \"O\", {limits}")));
+    let analysis = Analysis::new(&model).unwrap();
+    let of = |design: &[f64], name: &str| {
+        let k = model.joint_limits.iter().position(|limit| limit.name == name).unwrap();
+        analysis.joint_limits(design).remove(k)
+    };
+    // The stop itself is where it is for all designs.
+    assert_eq!(of(&[0.0], "slide.displacement").greatest.d, [0.0]);
+    // The crank turns by -pi per second up to there.
+    let crank = of(&[0.0], "crank.angle");
+    assert_near(crank.least.value, -PI * times_of(CRANK, 0.03)[0], EXACT, "angle at the end");
+    let end = |b: f64| -PI * times_of(CRANK + b, 0.03)[0];
+    let re_solved = |b: f64| of(&[b], "crank.angle").least.value;
+    for (after, before) in [(end(STEP), end(-STEP)), (re_solved(STEP), re_solved(-STEP))] {
+        let expected = (after - before) / (2.0 * STEP);
+        assert!(expected.abs() > 1.0);
+        assert_near(crank.least.d[0], expected, DIFFERENCE * expected.abs(), "angle at the end");
+    }
+    assert_near(crank.greatest.d[0], 0.0, EXACT, "angle at the start");
+    // Metrics are those of the output times, which are fixed.
+    let metric = model.metrics.iter().position(|m| m.name == "slide.displacement.max").unwrap();
+    let value = |b: f64| metrics(&model, &analysis.solve(Run::new().at(&[b]))).remove(metric);
+    let expected = (value(STEP).value.unwrap() - value(-STEP).value.unwrap()) / (2.0 * STEP);
+    assert_near(value(0.0).d[0], expected, DIFFERENCE, "metric");
+}
+
+#[test]
+fn derivatives_at_the_end_of_a_motion_that_is_left_early_are_unknown() {
+    // The crank is too long: it is blocked just after a quarter of a turn.
+    let text = press("mm", "deg", "limits.displacement = { max = 300 }", 20);
+    let limits = "limits = { angle = { min = -170 } } }\npin";
+    let text = text.replace("at = \"O\" }\npin", &format!("at = \"O\", {limits}"));
+    let model = model_of(&text.replace("O = [0, 0]", "O = [0, -90]"));
+    let found = Analysis::new(&model).unwrap().joint_limits(&[]);
+    let k = model.joint_limits.iter().position(|limit| limit.name == "crank.angle").unwrap();
+    assert!(found[k].least.time > 0.4 && found[k].least.time < 0.6, "{:?}", found[k].least);
+    assert!(found[k].least.d[0].is_nan(), "{:?}", found[k].least);
+    assert!(found[k].greatest.d[0].is_finite(), "{:?}", found[k].greatest);
+
+    // At an equilibrium, nothing has a rate; but the stop is where it is.
+    let model = model_of(
+        "name = \"slider\"\nunits = { length = \"mm\", angle = \"deg\" }\nparameters.k = 5\n\
+         bodies = { ram = {}, arm = {} }\n[joints]\n\
+         slide = { type = \"translational\", bodies = [\"ground\", \"ram\"], at = [0, 0, 0], axis = \"x\", \
+         limits = { displacement = { max = 8, stop = true } } }\n\
+         arm = { type = \"revolute\", bodies = [\"ground\", \"arm\"], at = [0, 50, 0], axis = \"z\", \
+         limits = { angle = { max = 80 } } }\n[drivers]\narm = { joint = \"arm\", law = \"100*t\" }\n\
+         [forces]\nspring = { type = \"joint_spring\", joint = \"slide\", stiffness = \"k\" }\n\
+         load = { type = \"force\", at = { body = \"ram\", at = [0, 0, 0] }, force = 50, along = \"x\", law = \"t\" }\n\
+         [equilibrium]\n[time]\nend = 1\nsteps = 7\n",
+    );
+    let [slide, arm] = &Analysis::new(&model).unwrap().joint_limits(&[])[..] else { panic!("two limits") };
+    assert_near(slide.greatest.time, 0.8, 1e-10, "stop");
+    assert_eq!(slide.greatest.d, [0.0]);
+    assert_near(arm.greatest.time, 0.8, 1e-10, "stop");
+    assert!(arm.greatest.d[0].is_nan(), "{:?}", arm.greatest);
+}
+
+#[test]
 fn each_of_many_designs_ends_at_its_own_stop() {
     let model = model_of(&press("mm", "deg", "limits.displacement = { max = 30, stop = true }", 50));
     let designs: Vec<Vec<f64>> = (0..20).map(|k| vec![1.5e-3 * (f64::from(k) - 12.0)]).collect();

@@ -5,15 +5,18 @@ use std::fmt::Write;
 
 use hardpoint::law::{ConstantSpeed, Harmonic, Law};
 use hardpoint::space::Vec3;
+use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Solution};
 use hardpoint::{draft::*, model::*};
-use hardpoint_file::{Diagnostic, ModelFile};
+use hardpoint_file::{Diagnostic, ModelFile, Severity};
 use hardpoint_report::course::Course;
 use hardpoint_report::diagnose;
 use hardpoint_report::facts::outline;
 use hardpoint_report::page::Table;
 use hardpoint_report::payload::{Request, payload};
 use hardpoint_report::summary::Summary;
+use hardpoint_report::tolerance::nominal_stop;
+use hardpoint_study::{Motions, StudyCost};
 
 /// Model in mm and degrees.
 const FRAME: &str = r#"
@@ -570,4 +573,133 @@ time = {{ end = 1, steps = 4 }}
     let (solution, summary) = solved(&file);
     let shown = listing(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None));
     assert!(!shown.contains("HP0305"), "{shown}");
+}
+
+/// A flap whose driver is released; a spring holds it against a force that grows, up to an end stop at 12 degrees.
+const FLAP: &str = r#"
+name = "flap"
+units = { length = "mm", angle = "deg" }
+hardpoints = { A = [0, 0, 0] }
+bodies = { arm = {} }
+joints.hinge.type = "revolute"
+joints.hinge.bodies = ["ground", "arm"]
+joints.hinge.at = "A"
+joints.hinge.axis = "y"
+joints.hinge.limits.angle = { max = 12, stop = true }
+drivers.turn = { joint = "hinge", law = "3*t" }
+time = { end = 1, steps = 5 }
+equilibrium = { released = ["turn"] }
+[forces]
+spring = { type = "torsion_spring", joint = "hinge", stiffness = 1 }
+pull = { type = "force", at = { body = "arm", at = [100, 0, 0] }, force = 200, along = "-z", law = "t" }
+"#;
+
+#[test]
+fn a_released_driver_at_an_end_stop_has_its_coordinate_and_not_its_law() {
+    // The hinge is at its limit of 12 deg there, in either sense of the driver; the law is at 1.9 deg.
+    for (sense, value) in [("", "12 deg"), (", reversed = true", "-12 deg")] {
+        let text = FLAP.replace("law = \"3*t\"", &format!("law = \"3*t\"{sense}"));
+        let file = hardpoint_file::parse(&text, "drawn.toml").unwrap();
+        let (solution, summary) = solved(&file);
+        let stop = diagnose::stop(&file, solution.stop.as_ref().unwrap(), solution.motion.len(), None);
+        let notes = stop.notes.join("\n");
+        assert!(notes.contains(&format!("`turn` at {value}\n")), "{notes}");
+        assert!(!notes.contains("with turn "), "{notes}");
+        assert!(
+            summary.joint_limits.iter().all(|limit| limit.crossings.iter().all(|c| c.drivers.is_empty()))
+        );
+    }
+    // With all of the force at the start it begins beyond the stop.
+    let beyond = FLAP.replace("law = \"t\" }", "law = \"1 + t\" }");
+    let file = hardpoint_file::parse(&beyond, "drawn.toml").unwrap();
+    let (solution, _) = solved(&file);
+    let stop = solution.stop.as_ref().unwrap();
+    assert_eq!(stop.code(), "HP0267");
+    // k angle = F L cos(angle)
+    let angle = stop.drivers[0];
+    assert!((angle.to_degrees() - 20.0 * angle.cos()).abs() < 1e-6 && angle > 0.2, "{angle}");
+}
+
+#[test]
+fn a_study_of_a_nominal_motion_that_ends_early_was_not_made() {
+    let text = r#"
+name = "flap"
+units = { length = "mm", angle = "deg" }
+hardpoints = { A = [0, 0, 0] }
+bodies = { arm = {} }
+joints.hinge.type = "revolute"
+joints.hinge.bodies = ["ground", "arm"]
+joints.hinge.at = "A"
+joints.hinge.axis = "y"
+joints.hinge.limits.angle = { max = 85, stop = true }
+drivers.turn = { joint = "hinge", law = "90*t" }
+time = { end = 1, steps = 20 }
+"#;
+    let file = hardpoint_file::parse(text, "drawn.toml").unwrap();
+    let models = file.model.motions();
+    let motions = Motions::of(&models, Formulation::Relative).unwrap();
+    let stopped = motions.evaluate(&[], &mut StudyCost::default(), &|| true).unwrap_err();
+    let (_, diagnostic) = nominal_stop(&file, &motions, &[0], &stopped);
+    assert_eq!(diagnostic.severity, Severity::Error);
+    insta::assert_snapshot!(listing(&[diagnostic]));
+}
+
+#[test]
+fn a_reaction_that_redundant_constraints_share_is_not_blamed_on_friction() {
+    // The radial force of a prismatic joint in a plane has a component across it, which the constraints share.
+    let text = |coefficient: f64| {
+        format!(
+            r#"
+name = "gate on a strut"
+units = {{ length = "mm", angle = "deg" }}
+planar = "xy"
+loads = "static"
+hardpoints = {{ H = [0, 0], G = [520, -180], S = [95, -260], T = [430, -30], M = [200, -190] }}
+bodies = {{ gate = ["H", "T", "G"], tube = ["S", "M"], rod = ["T", "M"] }}
+drivers.open = {{ joint = "H", law = "80*sin(pi*t/2)" }}
+gravity = {{ along = "-y" }}
+points.G = {{ body = "gate", at = "G" }}
+masses.gate = {{ type = "rigid", centre = "G", mass = 28 }}
+measures.mr = {{ type = "reaction", joint = "M", part = "radial" }}
+time = {{ at = [0.1, 0.5] }}
+[joints]
+H = {{ type = "revolute", bodies = ["ground", "gate"], at = "H" }}
+S = {{ type = "revolute", bodies = ["ground", "tube"], at = "S" }}
+M = {{ type = "translational", bodies = ["tube", "rod"], at = "M", axis = {{ through = ["S", "T"] }} }}
+[forces]
+gas = {{ type = "joint_spring", joint = "M", stiffness = 1.2, equilibrium = 750 }}
+pin = {{ type = "friction", joint = "H", coefficient = {coefficient}, radius = 8 }}
+"#
+        )
+    };
+    let shown = |coefficient: f64| {
+        let file = hardpoint_file::parse(&text(coefficient), "drawn.toml").unwrap();
+        let (solution, summary) = solved(&file);
+        listing(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None))
+    };
+    let mild = shown(0.2);
+    assert!(mild.contains("HP0409") && mild.contains("redundant constraints share it"), "{mild}");
+    assert!(!mild.contains("jams"), "{mild}");
+}
+
+#[test]
+fn bodies_that_are_connected_with_one_another_only_are_not_connected_to_ground() {
+    let text = r#"
+name = "loose pair"
+units = { length = "mm", angle = "deg" }
+hardpoints = { A = [0, 0, 0], B = [40, 200, 0] }
+bodies = { arm = {}, one = {}, two = {} }
+drivers.turn = { joint = "hinge", law = "90*t" }
+time = { end = 1, steps = 4 }
+[joints]
+hinge = { type = "revolute", bodies = ["ground", "arm"], at = "A", axis = "z" }
+pair = { type = "revolute", bodies = ["one", "two"], at = "B", axis = "z" }
+"#;
+    let shown = |text: &str| {
+        let file = hardpoint_file::parse(text, "drawn.toml").unwrap();
+        listing(&[diagnose::topology_fault(&file, &Analysis::new(&file.model).unwrap_err())])
+    };
+    // Of the arm without its driver one motion remains besides.
+    let undriven: Vec<&str> = text.lines().filter(|line| !line.starts_with("drivers")).collect();
+    insta::assert_snapshot!(shown(text) + "\n" + &shown(&undriven.join("\n")));
 }

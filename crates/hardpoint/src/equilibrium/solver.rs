@@ -868,11 +868,12 @@ impl<'a> EquilibriumSolver<'a> {
     /// End of the run for this reason; the results up to the last output time are kept.
     fn stop_as(&self, kind: StopKind, failed_time: f64) -> Box<Stop> {
         let at_output = self.path.last();
+        let drivers = at_output.map_or(&self.last.drivers, |passed| &passed.drivers);
         Box::new(Stop {
             kind,
             last_time: at_output.map(|passed| passed.time),
             failed_time,
-            drivers: at_output.map_or(&self.last.drivers, |passed| &passed.drivers).clone(),
+            drivers: self.model.drivers.iter().zip(drivers).map(|(d, by)| d.with_sense(*by)).collect(),
             block: None,
             pivot_ratio: 1.0,
             joints: Vec::new(),

@@ -192,6 +192,11 @@ impl Friction {
         false
     }
 
+    /// True if the friction of all elements is determined.
+    pub fn is_known(&self) -> bool {
+        self.moments.iter().all(|m| m.is_finite())
+    }
+
     /// Elements whose friction is not determined, because redundant constraints share the normal force.
     pub fn shared(&self) -> impl Iterator<Item = ElementId> {
         self.elements.iter().filter(|friction| friction.is_shared).map(|friction| friction.element)

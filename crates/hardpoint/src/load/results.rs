@@ -84,6 +84,8 @@ pub struct Loads {
     ///
     /// [`Model::given_forces`]: crate::model::Model::given_forces
     pub given: Vec<f64>,
+    /// True for each output time at which the friction of all elements is determined. No load is determined at others.
+    pub friction_known: Vec<bool>,
     /// Friction elements whose friction is undetermined at some time because redundant constraints share their normal
     /// force. No load is determined then.
     pub shared_friction: Vec<ElementId>,

@@ -198,6 +198,11 @@ impl<'a> LoadSolver<'a> {
         self.equilibrium.applied().size(element)
     }
 
+    /// True if the friction of all elements is determined at this step.
+    pub fn is_friction_known(&self) -> bool {
+        self.equilibrium.friction.is_known()
+    }
+
     /// Elements whose friction is not determined at this step, because redundant constraints share the normal force.
     pub fn shared_friction(&self) -> impl Iterator<Item = ElementId> {
         self.equilibrium.friction.shared()

@@ -211,4 +211,11 @@ impl<'m> Stepper<'m> {
             closed: (path == Path::Assembly).then_some(now),
         })
     }
+
+    /// Writes the values of the released drivers of a user's model at the accepted position.
+    pub fn write_released(&self, model: &Model, values: &mut [f64]) {
+        for d in model.equilibrium.iter().flat_map(|equilibrium| &equilibrium.released) {
+            values[d.0] = model.drivers[d.0].with_sense(self.mechanism.saved.drivers[d.0][0]);
+        }
+    }
 }

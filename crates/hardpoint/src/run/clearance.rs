@@ -11,6 +11,7 @@ use crate::number::{Dual, Jet, Rates};
 use crate::space::Vec3;
 
 use super::curve::SampledCurve;
+use super::joint_limits::MovingEnd;
 use super::{Analysis, Run, Solution};
 
 /// A minimum or contact is located if a step of Newton's method is below this fraction of the motion: positions are
@@ -69,8 +70,8 @@ pub struct ClearanceMinimum {
     pub place: MinimumPlace,
     /// True if the rate jumps there from negative to positive, since two features are equally near.
     pub is_kink: bool,
-    /// Derivative of the distance by every design variable; NaN for those that are not admissible, and where the cores
-    /// meet.
+    /// Derivative of the distance by every design variable; NaN for those that are not admissible, where the cores
+    /// meet, and where the motion ends early at a time that changes by an unknown amount.
     pub d: Vec<f64>,
 }
 
@@ -271,7 +272,12 @@ impl Analysis<'_> {
             let last = curves.times.last().copied().unwrap_or(f64::NEG_INFINITY);
             events.retain(|t| *t <= last);
         }
-        let mut solution = self.motion_at(&events, design, true);
+        // The derivatives of the time at which a limit is reached are those of its measure.
+        let is_at_limit = first_stop.as_ref().is_some_and(|s| matches!(s.kind, StopKind::JointLimit { .. }));
+        let mut solution = match is_at_limit {
+            true => self.beyond_stops(&events, design, true),
+            false => self.motion_at(&events, design, true),
+        };
         curves.add(self, design, &solution.motion);
         solution.stop = solution.stop.or(first_stop);
         if solution.stop.as_ref().is_some_and(|stop| stop.kind == StopKind::Interrupted) {
@@ -296,6 +302,11 @@ impl Analysis<'_> {
         located: &Located,
         solution: &Solution,
     ) -> Clearances {
+        let of_stop =
+            solution.stop.as_ref().map(|stop| (stop.last_time.unwrap_or(stop.failed_time), stop.kind));
+        let ends = curves.times.first().zip(curves.times.last());
+        let end =
+            ends.and_then(|(first, last)| MovingEnd::of(self.model(), solution, [*first, *last], of_stop));
         let is_output = |time: f64| index_of(&self.model().times, time).is_some();
         let pair_of = |(p, shapes): (usize, &[ShapeId; 2])| {
             let samples = &curves.samples[p];
@@ -320,6 +331,9 @@ impl Analysis<'_> {
                 }
                 match event.kind {
                     EventKind::Minimum(place) => {
+                        if let Some(end) = end.as_ref().filter(|_| place == MinimumPlace::End) {
+                            end.follow(at_event.distance[1], &mut d);
+                        }
                         if at_event.cores_meet {
                             // The nearest points coincide: no direction leads from one to the other.
                             d.fill(f64::NAN);

@@ -8,7 +8,8 @@ use crate::model::{JointLimit, LimitEnd, Model, OutputSource, VariableId};
 use crate::motion::{Stop, StopKind};
 
 use super::curve::{SampledCurve, crossing};
-use super::{Analysis, PreparedDesign, Run, Solution};
+use super::walk::Scope;
+use super::{Analysis, PreparedDesign, Run, Solution, Walk};
 
 /// A crossing is located if a step of Newton's method is below this fraction of the motion: positions are solved to
 /// 1e-12 of the mechanism's size.
@@ -35,7 +36,8 @@ pub struct LimitExtremum {
     pub time: f64,
     /// Value, m or rad.
     pub value: f64,
-    /// Derivative of the value by every design variable; NaN for those that are not admissible.
+    /// Derivative of the value by every design variable; NaN for those that are not admissible, and where the motion
+    /// ends early at a time that changes by an unknown amount.
     pub d: Vec<f64>,
 }
 
@@ -110,6 +112,47 @@ impl Crossings {
     }
 }
 
+/// End of a motion before its last output time, which moves with the design.
+pub(super) struct MovingEnd {
+    /// Time, s.
+    time: f64,
+    /// The limit that ends the motion, as an index in [`Model::joint_limits`], if one does.
+    limit: Option<usize>,
+    /// Derivative of the time by every design variable; NaN where it is not known.
+    d: Vec<f64>,
+}
+
+impl MovingEnd {
+    /// The end of a motion that takes these times, from its solution there with measures and sensitivities; `None` if
+    /// the end is fixed. `stop` is the time and the kind of the stop at a limit.
+    pub fn of(
+        model: &Model,
+        solution: &Solution,
+        [first, time]: [f64; 2],
+        stop: Option<(f64, StopKind)>,
+    ) -> Option<Self> {
+        let mut limit = None;
+        if let Some((reached, StopKind::JointLimit { limit: by, begins_beyond, .. })) = stop {
+            if begins_beyond {
+                return None;
+            }
+            limit = Some(by).filter(|_| reached == time);
+        } else if model.times.last().is_none_or(|last| *last <= time) {
+            return None;
+        }
+        let place = || solution.motion.times.iter().position(|t| *t == time);
+        let known =
+            limit.and_then(|limit| time_derivatives(model, solution, (limit, place()?), time - first));
+        Some(Self { time, limit, d: known.unwrap_or_else(|| vec![f64::NAN; model.variables.len()]) })
+    }
+
+    /// Makes derivatives at constant time, of a value with this rate at the end, those of the value at the moving end.
+    pub fn follow(&self, rate: f64, d: &mut [f64]) {
+        // y_b + y. T_b                                                                          docs/theory.md (62)
+        d.iter_mut().zip(&self.d).for_each(|(d, by)| *d += rate * by);
+    }
+}
+
 impl Analysis<'_> {
     /// Solves the motion of a design up to its stop, and locates the ranges of all limits of joints and the times at
     /// which they are reached, with their derivatives by the design variables. Empty if no output time is solved.
@@ -120,7 +163,8 @@ impl Analysis<'_> {
         }
         let Some(mut found) = self.crossings(design, |_| true) else { return Vec::new() };
         let mut times = found.solution.motion.times.clone();
-        if let Some((end, _)) = found.stop(model) {
+        let stop = found.stop(model);
+        if let Some((end, _)) = stop {
             // The motion ends there.
             found.located.retain(|c| c.time <= end);
             times.retain(|t| *t < end);
@@ -148,7 +192,8 @@ impl Analysis<'_> {
         if solution.motion.len() < events.len() {
             return Vec::new();
         }
-        results(model, &extrema, &found, &solution)
+        let end = times.last().and_then(|last| MovingEnd::of(model, &solution, [times[0], *last], stop));
+        results(model, &extrema, (&found, end.as_ref()), &solution)
     }
 
     /// Returns the stop of a design at the limit of a joint, if there is one.
@@ -169,12 +214,7 @@ impl Analysis<'_> {
             kind,
             last_time,
             failed_time,
-            drivers: model
-                .drivers
-                .iter()
-                .zip(&design.laws)
-                .map(|(driver, law)| driver.with_sense(law.at(at).value()))
-                .collect(),
+            drivers: self.drivers_at(design, at),
             block: None,
             pivot_ratio: 1.0,
             joints: Vec::new(),
@@ -183,8 +223,23 @@ impl Analysis<'_> {
         })
     }
 
+    /// Values of all drivers at a time of the motion: those of their laws, of released ones those at equilibrium.
+    fn drivers_at(&self, design: &PreparedDesign, t: f64) -> Vec<f64> {
+        let model = self.model();
+        let by_law = model.drivers.iter().zip(&design.laws);
+        let mut values: Vec<f64> = by_law.map(|(driver, law)| driver.with_sense(law.at(t).value())).collect();
+        if model.equilibrium.as_ref().is_some_and(|equilibrium| !equilibrium.released.is_empty()) {
+            let before = model.times.iter().copied().take_while(|before| *before < t);
+            let analysis = self.without_stops(before.chain([t]).collect());
+            let design = analysis.prepare(&design.values, Scope::of_one(false, false));
+            let mut walk = Walk::new(&analysis, &design, vec![false; model.bodies.len()]);
+            walk.each(|one| one.write_released(model, &mut values));
+        }
+        values
+    }
+
     /// Solution at other times of the motion that no limit ends, with measures.
-    fn beyond_stops(&self, times: &[f64], design: &[f64], sensitivities: bool) -> Solution {
+    pub(super) fn beyond_stops(&self, times: &[f64], design: &[f64], sensitivities: bool) -> Solution {
         let run = Run::new().at(design);
         let run = if sensitivities { run } else { run.without_sensitivities() };
         self.without_stops(times.to_vec()).solve(run)
@@ -239,8 +294,7 @@ impl Analysis<'_> {
 
 /// Curve of a limited value at the times of a solution.
 fn curve_of<'s>(limit: &JointLimit, solution: &'s Solution) -> Option<SampledCurve<'s, f64>> {
-    let measured = &solution.measured;
-    let m = measured.outputs.iter().position(|o| o.source == OutputSource::Measure(limit.measure))?;
+    let (measured, m) = (&solution.measured, column(limit, solution)?);
     let values: Vec<[f64; 3]> = (0..measured.len()).map(|k| measured.value(k, m)).collect();
     let Output { known, kinks, .. } = measured.outputs[m];
     let curve = SampledCurve { times: &solution.motion.times, orders: known.orders, kinks, values };
@@ -389,40 +443,73 @@ fn extremum(curve: &SampledCurve<'_, f64>, sign: f64, add: &mut Vec<f64>) -> f64
     times[best]
 }
 
+/// Derivatives of output m at time k of a solution by all design variables; NaN for those that are not admissible.
+fn derivatives(model: &Model, solution: &Solution, k: usize, m: usize) -> Vec<f64> {
+    let Solution { measured, sensitivities, .. } = solution;
+    let variables = (0..model.variables.len()).map(VariableId);
+    let d = variables.map(|b| match sensitivities.at(k, b.0).is_some() {
+        true => measured.derivative(k, b, m, 0),
+        false => f64::NAN,
+    });
+    d.collect()
+}
+
+/// Column of the measure of a limit.
+fn column(limit: &JointLimit, solution: &Solution) -> Option<usize> {
+    solution.measured.outputs.iter().position(|o| o.source == OutputSource::Measure(limit.measure))
+}
+
+/// Derivatives of the time at which a limit is reached, time k of a solution that has its extrema, in a motion of this
+/// duration; NaN where the crossing is grazing.
+fn time_derivatives(
+    model: &Model,
+    solution: &Solution,
+    (limit, k): (usize, usize),
+    span: f64,
+) -> Option<Vec<f64>> {
+    let m = column(&model.joint_limits[limit], solution)?;
+    let measured = &solution.measured;
+    let rate = measured.value(k, m)[1];
+    // Scale of the rate: the range of the value over the time of the motion.
+    let values = || (0..measured.len()).map(|k| measured.value(k, m)[0]);
+    let range = values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min);
+    let rate = if rate.abs() * span > GRAZING * range { rate } else { f64::NAN };
+    // t_b = -x_b / x.                                                                       docs/theory.md (62)
+    Some(derivatives(model, solution, k, m).iter().map(|d| -d / rate).collect())
+}
+
 /// Results at the located times, of a motion that is solved at them.
-fn results(model: &Model, extrema: &[[f64; 2]], found: &Crossings, solution: &Solution) -> Vec<LimitRange> {
-    let times = &solution.motion.times;
-    let (measured, sensitivities) = (&solution.measured, &solution.sensitivities);
-    let derivatives = |k: usize, m: usize| -> Vec<f64> {
-        let variables = (0..model.variables.len()).map(VariableId);
-        let d = variables.map(|b| match sensitivities.at(k, b.0).is_some() {
-            true => measured.derivative(k, b, m, 0),
-            false => f64::NAN,
-        });
-        d.collect()
-    };
+fn results(
+    model: &Model,
+    extrema: &[[f64; 2]],
+    (found, end): (&Crossings, Option<&MovingEnd>),
+    solution: &Solution,
+) -> Vec<LimitRange> {
+    let Solution { motion, measured, .. } = solution;
+    let span = found.solution.motion.times.last().map_or(0.0, |last| last - motion.times[0]);
     let of_limit = |(number, limit): (usize, &JointLimit)| {
-        let m = measured.outputs.iter().position(|o| o.source == OutputSource::Measure(limit.measure))?;
-        let place = |time: f64| times.iter().position(|t| *t == time);
+        let m = column(limit, solution)?;
+        let place = |time: f64| motion.times.iter().position(|t| *t == time);
         let extremum = |time: f64| {
             let k = place(time)?;
-            Some(LimitExtremum { time, value: measured.value(k, m)[0], d: derivatives(k, m) })
+            let [value, rate, _] = measured.value(k, m);
+            let mut d = derivatives(model, solution, k, m);
+            match end.filter(|end| end.time == time) {
+                // The value at which the motion ends is the same for all designs.
+                Some(end) if end.limit == Some(number) => d.iter_mut().for_each(|d| *d = 0.0 * d.abs()),
+                Some(end) => end.follow(rate, &mut d),
+                None => (),
+            }
+            Some(LimitExtremum { time, value, d })
         };
         let [least, greatest] = extrema[number].map(extremum);
-        let (least, greatest) = (least?, greatest?);
-        // Scale of the rate: the range of the value over the time of the motion.
-        let range = greatest.value - least.value;
-        let span = found.solution.motion.times.last()? - times[0];
         let crossings = found.located.iter().filter(|c| c.limit == number).filter_map(|c| {
-            let k = place(c.time)?;
-            let rate = measured.value(k, m)[1];
-            let rate = if rate.abs() * span > GRAZING * range { rate } else { f64::NAN };
-            // t_b = -x_b / x.                                                              docs/theory.md (62)
-            let d = derivatives(k, m).iter().map(|d| -d / rate).collect();
+            let d = time_derivatives(model, solution, (number, place(c.time)?), span)?;
             Some(LimitCrossing { time: c.time, end: c.end, leaves: c.leaves, d })
         });
         let crossings = crossings.collect();
-        Some(LimitRange { least, greatest, begins_beyond: found.begins_beyond[number], crossings })
+        let begins_beyond = found.begins_beyond[number];
+        Some(LimitRange { least: least?, greatest: greatest?, begins_beyond, crossings })
     };
     model.joint_limits.iter().enumerate().map(of_limit).collect::<Option<_>>().unwrap_or_default()
 }

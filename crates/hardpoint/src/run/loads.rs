@@ -36,6 +36,7 @@ impl Analysis<'_> {
             let SolvedSteps::One(_, Some(solver), _) = solved else { return };
             let step = result.times.len();
             result.times.push(model.times[step]);
+            result.friction_known.push(solver.is_friction_known());
             note(&mut result.shared_friction, solver.shared_friction());
             note(&mut result.ambiguous_friction, solver.ambiguous_friction());
             for joint in (0..model.joints.len()).map(JointId) {

@@ -185,7 +185,7 @@ impl<'a> Walk<'a> {
         while self.done < times.len() && stop.is_none() {
             let k = self.done;
             if self.analysis.is_ended() {
-                return Some(self.analysis.stopped(StopKind::Interrupted, k));
+                return Some(self.interrupted(k));
             }
             let at_once = match k {
                 0 => 0,
@@ -240,6 +240,15 @@ impl<'a> Walk<'a> {
         })
     }
 
+    /// Stop of the caller after `done` output times.
+    fn interrupted(&self, done: usize) -> Stop {
+        let mut stop = self.analysis.stopped(StopKind::Interrupted, done);
+        if done > 0 {
+            self.one.write_released(self.analysis.model(), &mut stop.drivers);
+        }
+        stop
+    }
+
     /// Reports progress for `solved` output times. Returns how many of them are valid, and the stop if the caller
     /// interrupts the run.
     fn report(
@@ -251,7 +260,7 @@ impl<'a> Walk<'a> {
         for count in 1..=solved {
             let done = self.done + count;
             if progress(Progress { done, total }).is_break() && done < total {
-                return (count, Some(self.analysis.stopped(StopKind::Interrupted, done)));
+                return (count, Some(self.interrupted(done)));
             }
         }
         (solved, None)

@@ -1,7 +1,7 @@
 //! Errors of the mechanism as a whole, with the names of the model.
 
 use crate::draft::some_of;
-use crate::model::{BodyId, DriverId, JointId, Model};
+use crate::model::{BodyId, DriverId, GROUND, JointId, Model};
 
 use super::blocks::SparseRow;
 use super::{Closure, CutReason, Formulation, Link, RowId, Topology};
@@ -10,7 +10,7 @@ use super::{Closure, CutReason, Formulation, Link, RowId, Topology};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TopologyError {
     /// Under-driven: motions remain that no driver prescribes (HP0301).
-    #[error("{}", under_driven_text(.freedom, .bodies))]
+    #[error("{}", under_driven_text(*.freedom, .bodies, .unconnected))]
     UnderDriven {
         /// Number of remaining free motions.
         freedom: usize,
@@ -20,6 +20,8 @@ pub enum TopologyError {
         joint_names: Vec<String>,
         /// Names of the bodies that move in them.
         bodies: Vec<String>,
+        /// Names of those of these bodies that no joint connects to ground, directly or by other bodies.
+        unconnected: Vec<String>,
     },
     /// Singular in the design configuration: motions are free there that are not free nearby (HP0304).
     #[error("the mechanism is singular in the design configuration ({})", dozen(.bodies))]
@@ -75,9 +77,13 @@ fn over_driven_text(drivers: usize, mobility: usize) -> String {
     format!("the mechanism is over-driven: {drivers} {prescribe} {mobility} {degrees} of freedom")
 }
 
-fn under_driven_text(freedom: &usize, bodies: &[String]) -> String {
-    let s = if *freedom == 1 { "motion remains" } else { "motions remain" };
-    format!("the mechanism is under-driven: {freedom} {s} free ({})", dozen(bodies))
+fn under_driven_text(freedom: usize, bodies: &[String], unconnected: &[String]) -> String {
+    let s = if freedom == 1 { "motion remains" } else { "motions remain" };
+    let text = format!("the mechanism is under-driven: {freedom} {s} free ({})", dozen(bodies));
+    match unconnected.len() == bodies.len() {
+        true => text + ", as these bodies are not connected to ground",
+        false => text,
+    }
 }
 
 fn elastic_loop_text(joint: &str, cut: &CutReason) -> String {
@@ -109,8 +115,15 @@ impl TopologyError {
     /// Returns the notes: facts about the error.
     pub fn notes(&self) -> Vec<String> {
         match self {
-            Self::UnderDriven { joint_names, .. } => {
-                vec![format!("joints that still move: {}", dozen(joint_names))]
+            Self::UnderDriven { joint_names, unconnected, .. } => {
+                let of = |what: &str, names: &[String]| {
+                    (!names.is_empty()).then(|| format!("{what}: {}", dozen(names)))
+                };
+                let lists = [
+                    of("bodies that are not connected to ground", unconnected),
+                    of("joints that still move", joint_names),
+                ];
+                lists.into_iter().flatten().collect()
             }
             Self::Singular { freedom, joint_names, .. } => vec![
                 format!(
@@ -138,6 +151,13 @@ impl TopologyError {
     /// Returns the help text: an instruction that corrects the error.
     pub fn help(&self) -> String {
         match self {
+            Self::UnderDriven { unconnected, bodies, .. } if !unconnected.is_empty() => {
+                let others = match unconnected.len() == bodies.len() {
+                    true => "",
+                    false => "; then see which motions of the others remain",
+                };
+                format!("connect {} to ground by a joint, or remove them{others}", dozen(unconnected))
+            }
             Self::UnderDriven { freedom: 1, .. } => {
                 "add a driver on one of these joints, or a joint or rod that prevents the motion".into()
             }
@@ -209,11 +229,35 @@ pub(super) fn free_motions(
             .collect();
     }
     let joint_names = joints.iter().map(|j| format!("`{}`", model.joints[j.0].name)).collect();
-    let bodies = bodies.iter().map(|b| format!("`{}`", model.bodies[b.0].name)).collect();
+    let connected = connected_to_ground(model);
+    let named = |b: &BodyId| format!("`{}`", model.bodies[b.0].name);
+    let unconnected = bodies.iter().filter(|b| !connected[b.0]).map(named).collect();
+    let bodies = bodies.iter().map(named).collect();
     if nearby < free.len() {
         return TopologyError::Singular { freedom: free.len() - nearby, joints, joint_names, bodies };
     }
-    TopologyError::UnderDriven { freedom: free.len(), joints, joint_names, bodies }
+    TopologyError::UnderDriven { freedom: free.len(), joints, joint_names, bodies, unconnected }
+}
+
+/// Per body: true if joints connect it to ground, directly or by other bodies.
+fn connected_to_ground(model: &Model) -> Vec<bool> {
+    let mut neighbours: Vec<Vec<BodyId>> = vec![Vec::new(); model.bodies.len()];
+    for joint in &model.joints {
+        let [i, j] = joint.bodies;
+        neighbours[i.0].push(j);
+        neighbours[j.0].push(i);
+    }
+    let mut connected = vec![false; model.bodies.len()];
+    connected[GROUND.0] = true;
+    let mut open = vec![GROUND];
+    while let Some(body) = open.pop() {
+        for &next in &neighbours[body.0] {
+            if !std::mem::replace(&mut connected[next.0], true) {
+                open.push(next);
+            }
+        }
+    }
+    connected
 }
 
 /// Returns the error of rows that fail under the drivers' motion, each with its failure per driver.
