@@ -1,4 +1,4 @@
-//! Deflates the contents of every report: the page's style and code, and the engine that solves in it.
+//! Texts of the contents of every report: the page's style and code, and the engine that solves in it.
 
 use std::{env, error::Error, fs, io::Write, path::Path};
 
@@ -8,23 +8,31 @@ use flate2::{Compression, write::DeflateEncoder};
 #[allow(dead_code, reason = "pages are only written here")]
 mod base85;
 
-/// Contents, each of some files of the folder `page` with a zero between them.
-const CONTENTS: [(&str, &[&str]); 2] =
-    [("code.txt", &["app.css", "app.js"]), ("engine.txt", &["engine.wasm"])];
+const PAGE: &str = "page";
+/// Parts of the code, with a zero between them.
+const CODE: [&str; 2] = ["app.css", "app.js"];
+/// The engine, which `web/build` has deflated.
+const ENGINE: &str = "engine.deflate";
 
 fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo::rerun-if-changed=src/base85.rs");
-    for (name, parts) in CONTENTS {
-        let mut deflated = DeflateEncoder::new(Vec::new(), Compression::best());
-        for (k, part) in parts.iter().enumerate() {
-            let file = Path::new("page").join(part);
-            println!("cargo::rerun-if-changed={}", file.display());
-            if k > 0 {
-                deflated.write_all(&[0])?;
-            }
-            deflated.write_all(&fs::read(file)?)?;
+    let mut deflated = DeflateEncoder::new(Vec::new(), Compression::best());
+    for (k, part) in CODE.iter().enumerate() {
+        if k > 0 {
+            deflated.write_all(&[0])?;
         }
-        fs::write(Path::new(&env::var("OUT_DIR")?).join(name), base85::encode(&deflated.finish()?))?;
+        deflated.write_all(&read(part)?)?;
     }
-    Ok(())
+    write("code.txt", &deflated.finish()?)?;
+    write("engine.txt", &read(ENGINE)?)
+}
+
+fn read(name: &str) -> Result<Vec<u8>, Box<dyn Error>> {
+    let file = Path::new(PAGE).join(name);
+    println!("cargo::rerun-if-changed={}", file.display());
+    Ok(fs::read(file)?)
+}
+
+fn write(name: &str, deflated: &[u8]) -> Result<(), Box<dyn Error>> {
+    Ok(fs::write(Path::new(&env::var("OUT_DIR")?).join(name), base85::encode(deflated))?)
 }

@@ -1,6 +1,7 @@
 import { spawnSync } from 'node:child_process'
 import { readdirSync, readFileSync } from 'node:fs'
 import { join } from 'node:path'
+import { inflateRawSync } from 'node:zlib'
 import { expect, inject, test } from 'vitest'
 import { type Ask, instantiate } from '../src/engine/instance'
 import type { OpenReply, OptimizeOffer, Request, DesignReply, StudyReply, ProgressReply } from '../src/engine/protocol'
@@ -22,7 +23,7 @@ const files = readdirSync(MODELS)
   .sort()
 
 async function engine(onProgress: (progress: ProgressReply) => void = () => {}): Promise<Ask> {
-  const binary = readFileSync(join(ROOT, 'crates/hardpoint-report/page/engine.wasm'))
+  const binary = inflateRawSync(readFileSync(join(ROOT, 'crates/hardpoint-report/page/engine.deflate')))
   return instantiate(await WebAssembly.compile(new Uint8Array(binary)), onProgress)
 }
 
@@ -64,7 +65,7 @@ function near(found: readonly (number | null)[], wanted: readonly (number | null
 }
 
 test('the page has an engine that asks for nothing but to tell', async () => {
-  const binary = readFileSync(join(ROOT, 'crates/hardpoint-report/page/engine.wasm'))
+  const binary = inflateRawSync(readFileSync(join(ROOT, 'crates/hardpoint-report/page/engine.deflate')))
   const imports = WebAssembly.Module.imports(await WebAssembly.compile(new Uint8Array(binary)))
   expect(imports.map(({ module, name }) => `${module}.${name}`).sort()).toEqual(['page.panicked', 'page.tell'])
 })
