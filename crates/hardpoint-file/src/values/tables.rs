@@ -54,9 +54,8 @@ impl Reader<'_> {
             let d = self.report("HP0103", key.span(), message);
             d.notes.push(format!("valid keys: {}", quoted(&list)));
             let given = close.filter(|close| given.contains(close));
-            let has_entries =
-                close.is_some_and(|close| matches!(fields.key(close).shape, Shape::Entries(..)));
-            let has_entries = has_entries && value.get_ref().is_table();
+            let has_entries = value.get_ref().is_table()
+                && close.is_some_and(|close| matches!(fields.key(close).shape, Shape::Entries(..)));
             if let Some(given) = given {
                 d.help = Some(match has_entries {
                     true => format!("move its entries to `{given}`"),

@@ -201,7 +201,6 @@ impl<'b> FitWorkspace<'b> {
                 "give standard deviations (`sigma`), fit fewer variables, or measure more",
             ));
         }
-        let magnitudes = self.magnitudes();
         let round_off = |k: &usize| (ROUND_OFF_OF_VALUE * magnitudes[*k]).powi(2);
         let at_nominal = self.rows(&self.nominal, &vec![0.0; variables]);
         let vanished = at_nominal.r.iter().map(|r| (VANISHED * r).powi(2)).sum::<f64>();
