@@ -12,7 +12,7 @@ pub(crate) const EQUILIBRIUM: Table = table! {
     /// weight, and dampers do nothing. The solution is the one that the unloaded mechanism reaches as the loads of the
     /// first output time grow, and that continues it from there.
     "Equilibrium":
-    /// Names of the drivers whose values springs and loads determine; their laws are where the search begins.
+    /// Names of the drivers whose values springs and loads determine, whatever their laws are.
     or("[]") "released": Shape::list(&DRIVER), "[\"bump\"]";
 };
 

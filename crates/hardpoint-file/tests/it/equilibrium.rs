@@ -1,6 +1,7 @@
 //! Equilibria of mechanisms with elastic joints: published data of a double wishbone on four bushings and of a lever in
 //! closed form, limits, identities, and what must not matter.
 
+use std::ops::ControlFlow;
 use std::path::Path;
 
 use hardpoint::load::LargestDeflection;
@@ -1413,5 +1414,98 @@ load = { type = "force", at = "tip", force = 100, along = "-z", law = "sin(pi*t)
         let (found, expected) = (at(0.0).d[0], (more - less) / (2.0 * step));
         // The slope there is a central difference of solved positions.
         assert!((found - expected).abs() < 1e-5 * expected.abs(), "{times}: {found} {expected}");
+    }
+}
+
+/// A lever OB on an elastic pin, held by a rigid rod to G. A force at its end turns it until O, B and G are in line,
+/// and beyond.
+fn lever_in_line(joint: &str, height: f64) -> String {
+    format!(
+        r#"
+name = "lever"
+units = {{ length = "mm", angle = "deg" }}
+hardpoints = {{ O = [0, 0, 0], B = [100, 0, 0], G = [250, {height}, 0] }}
+bodies.lever = {{}}
+joints.pin = {{ type = "{joint}", bodies = ["ground", "lever"], at = "O", axis = "z", axis2 = "x" }}
+joints.rod = {{ type = "distance", bodies = ["ground", "lever"], at = ["G", "B"] }}
+measures.by = {{ type = "position", point = {{ body = "lever", at = "B" }}, along = "y" }}
+equilibrium = {{}}
+time = {{ end = 1, steps = 10 }}
+[forces]
+bush = {{ type = "elastic_joint", joint = "pin", x = 100, y = 100, z = 100, about_x = 10, about_y = 10, about_z = 1 }}
+push = {{ type = "force", at = {{ body = "lever", at = "B" }}, force = 1, along = "y", law = "1000*t" }}
+"#
+    )
+}
+
+/// The rod stops holding the angle of the pin where all is in line; what it holds there is the rubber along the rod.
+#[test]
+fn a_rod_passes_the_line_through_an_elastic_hinge() {
+    for height in [30.0, 5.0, 0.0, -5.0] {
+        let of = |joint: &str, formulation| {
+            let model = file(&lever_in_line(joint, height)).model;
+            let solution = Analysis::with(&model, formulation).unwrap().run();
+            assert!(solution.stop.is_none(), "{joint} {height}: {:?}", solution.stop);
+            (0..=10).map(|k| value(&solution, k, "by")).collect::<Vec<_>>()
+        };
+        let expected = of("fixed", Formulation::Relative);
+        if height == 30.0 {
+            // Least energy with the rod as a condition, by Newton's method on both.
+            near(expected[10], 54.349503130e-3, 1e-11, "energy");
+        }
+        for joint in ["revolute", "spherical", "cylindrical", "universal"] {
+            for formulation in [Formulation::Relative, Formulation::Absolute] {
+                for (k, (found, expected)) in of(joint, formulation).into_iter().zip(&expected).enumerate() {
+                    near(found, *expected, 1e-12, &format!("{joint} {height} {formulation:?}, {k}"));
+                }
+            }
+        }
+    }
+}
+
+/// A crank-rocker that a spring and a moment on its crank turn beyond the position in which the rocker turns back: the
+/// angle of the crank is the moment by the stiffness, whichever joint has the driver that is released.
+#[test]
+fn it_does_not_matter_which_driver_is_released() {
+    for (driven, reversed) in [("a", false), ("b", false), ("d", false), ("d", true)] {
+        let text = format!(
+            r#"
+name = "four-bar"
+units = {{ length = "mm", angle = "deg" }}
+hardpoints = {{ A = [0, 0, 0], B = [21.21320343559643, 21.21320343559643, 0], C = [130, 95, 0], D = [120, 0, 0] }}
+bodies = {{ crank = {{}}, coupler = {{}}, rocker = {{}} }}
+equilibrium = {{ released = ["free"] }}
+time = {{ end = 1, steps = 12 }}
+[joints]
+a = {{ type = "revolute", bodies = ["ground", "crank"], at = "A", axis = "z" }}
+b = {{ type = "revolute", bodies = ["crank", "coupler"], at = "B", axis = "z" }}
+c = {{ type = "spherical", bodies = ["coupler", "rocker"], at = "C" }}
+d = {{ type = "revolute", bodies = ["ground", "rocker"], at = "D", axis = "z" }}
+[drivers]
+free = {{ joint = "{driven}", law = "0", reversed = {reversed} }}
+[forces]
+bar = {{ type = "torsion_spring", joint = "a", stiffness = 1 }}
+turn = {{ type = "moment", body = "crank", moment = 1, about = "z", law = "-170*t" }}
+[measures]
+crank = {{ type = "coordinate", joint = "a" }}
+own = {{ type = "coordinate", joint = "{driven}" }}
+"#
+        );
+        let solution = solved(&text);
+        for k in 0..=12 {
+            let expected = -170.0_f64.to_radians() * k as f64 / 12.0;
+            near(value(&solution, k, "crank"), expected, 1e-11, &format!("{driven}, {k}"));
+        }
+        // An interrupted run states the driver that the user released.
+        let model = file(&text).model;
+        let run = Run::new().progress(|progress| match progress.done {
+            7 => ControlFlow::Break(()),
+            _ => ControlFlow::Continue(()),
+        });
+        let stopped = Analysis::new(&model).unwrap().solve(run);
+        let stop = stopped.stop.unwrap();
+        let own = value(&solution, 6, "own");
+        assert_eq!(stop.kind, StopKind::Interrupted);
+        near(stop.drivers[0], if reversed { -own } else { own }, 1e-12, driven);
     }
 }

@@ -12,8 +12,8 @@ use crate::topology::{
 /// A mechanism whose elastic joints are open: drivers prescribe the openings.
 #[derive(Clone, Debug)]
 pub(crate) struct Released {
-    /// The model. Its drivers are those of the user, then the openings; its last joints may be ones without a name that
-    /// place bodies held by springs alone.
+    /// The model. Its drivers are those of the user, then the openings; released drivers may drive other coordinates
+    /// than the user's. Its last joints may be ones without a name that place bodies held by springs alone.
     pub model: Model,
     /// Drivers whose forces are zero in equilibrium: the user's that are released, then the openings.
     pub openings: Vec<DriverId>,
@@ -93,10 +93,22 @@ pub(crate) fn release(
             open.drivers.push(Driver { name, joint, coordinate, law, is_reversed });
         }
     }
+    let (determined_own, determined): (Vec<DriverId>, Vec<DriverId>) =
+        depends.determined.into_iter().partition(|d| *d < own);
     let mut numbered: Vec<(usize, Driver)> =
         std::mem::take(&mut open.drivers).into_iter().enumerate().collect();
-    numbered.retain(|(d, _)| !depends.determined.contains(&DriverId(*d)));
+    numbered.retain(|(d, _)| !determined.contains(&DriverId(*d)));
     open.drivers = numbered.into_iter().map(|(_, driver)| driver).collect();
+    // A released driver that others determine has the place of one of these: those of the user keep their numbers.
+    for d in determined_own {
+        if open.drivers.len() > own.0
+            && let Some(Driver { joint, coordinate, .. }) = open.drivers.pop()
+        {
+            let (law, is_reversed) = (Law::constant(0.0), false);
+            let name = open.drivers[d.0].name.clone();
+            open.drivers[d.0] = Driver { name, joint, coordinate, law, is_reversed };
+        }
+    }
     let mut topology = Topology::of_openings(&open, formulation)?;
     for (role, joint) in topology.roles.iter_mut().zip(&model.joints) {
         if *role == JointRole::Cut(CutReason::Requested) && !joint.cut {

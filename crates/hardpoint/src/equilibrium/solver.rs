@@ -106,6 +106,8 @@ struct Passed {
     time: f64,
     /// Values of all drivers.
     drivers: Vec<f64>,
+    /// Values of the user's drivers.
+    reported: Vec<f64>,
     stiffness: Vec<f64>,
 }
 
@@ -120,12 +122,12 @@ struct Prediction {
 /// Solver of the equilibria of one design.
 pub(crate) struct EquilibriumSolver<'a> {
     model: &'a Model,
+    user: &'a Model,
     openings: &'a [DriverId],
     loads: OpeningLoads<'a, f64>,
     turns: ElementTurns,
     variables: usize,
-    /// Number of the user's drivers, which come first, and those of them that are held.
-    own_drivers: usize,
+    /// The user's drivers that are held.
     held: Vec<DriverId>,
     /// Body-fixed data of measures.
     fixed: BodyFixed<Dual>,
@@ -153,26 +155,27 @@ pub(crate) struct EquilibriumSolver<'a> {
 
 impl<'a> EquilibriumSolver<'a> {
     /// Solver of the design with these values; `fields` are the design velocities of the variables, if sensitivities
-    /// are requested. The first drivers are the user's.
+    /// are requested. The first drivers are those of the user's model.
     pub fn new(
         design_map: &'a DesignMap<'a>,
         topology: &Topology,
         values: &[f64],
         (openings, kinds): (&'a [DriverId], &'a [MeasureKind]),
         fields: &[DesignVelocity],
-        own_drivers: usize,
+        user: &'a Model,
     ) -> Self {
         let model = design_map.model();
         let n = openings.len();
-        let held: Vec<DriverId> = (0..own_drivers).map(DriverId).filter(|d| !openings.contains(d)).collect();
+        let held: Vec<DriverId> =
+            (0..user.drivers.len()).map(DriverId).filter(|d| !openings.contains(d)).collect();
         let constant: Vec<Dual> = values.iter().map(|x| Dual::constant(*x)).collect();
         Self {
             model,
+            user,
             openings,
             loads: OpeningLoads::new(design_map, topology, values, (openings, kinds), fields, &held),
             turns: ElementTurns::new(model, topology),
             variables: fields.len(),
-            own_drivers,
             held,
             fixed: design_map.fixed(&constant),
             last: Accepted {
@@ -220,6 +223,7 @@ impl<'a> EquilibriumSolver<'a> {
         self.path.push(Passed {
             time: t,
             drivers: self.last.drivers.clone(),
+            reported: self.reported(one),
             stiffness: self.stiffness.clone(),
         });
         Ok(())
@@ -600,7 +604,7 @@ impl<'a> EquilibriumSolver<'a> {
         let named = NamedOpenings {
             model: self.model,
             openings: self.openings,
-            own_drivers: self.own_drivers,
+            own_drivers: self.user.drivers.len(),
             units: driver_units,
             points: global.collect(),
             size: self.fixed.size,
@@ -645,11 +649,11 @@ impl<'a> EquilibriumSolver<'a> {
         self.held.iter().map(of_driver).chain(of_loads).find_map(|(kind, law)| {
             let value = |t: f64| law.at(t).value().abs();
             if !value(end).is_finite() {
-                return Some(self.stop_as(kind, begin));
+                return Some(self.stop_as(one, kind, begin));
             }
             let nears_pole = value(begin) >= NEARS_POLE * f64::max(value(from), value(t));
             let pole = first_undefined(law, [begin, t]).filter(|_| nears_pole)?;
-            Some(self.stop_as(kind, pole))
+            Some(self.stop_as(one, kind, pole))
         })
     }
 
@@ -834,7 +838,8 @@ impl<'a> EquilibriumSolver<'a> {
         let failed_time = from.map_or(t, |from| from + (t - from) * done);
         let begins = self.path.is_empty() && done == 0.0;
         if let Rejection::Locked(rejection) = rejection {
-            return self.stop_as(advance::stop_at_rest(one, t, rejection).kind, failed_time);
+            let kind = advance::stop_at_rest(one, t, rejection).kind;
+            return self.stop_as(one, kind, failed_time);
         }
         // Named before the position changes.
         let least_stiff = self.least_stiff(one, begins);
@@ -862,18 +867,25 @@ impl<'a> EquilibriumSolver<'a> {
             true => StopKind::LimitLoad { part: done },
             false => StopKind::NoEquilibrium,
         });
-        self.stop_as(kind, failed_time)
+        self.stop_as(one, kind, failed_time)
+    }
+
+    /// Values of the user's drivers at the equilibrium that was accepted last.
+    fn reported(&self, one: &Stepper<'_>) -> Vec<f64> {
+        let own = self.user.drivers.iter().zip(&self.last.drivers);
+        let mut values: Vec<f64> = own.map(|(driver, by)| driver.with_sense(*by)).collect();
+        one.write_released(self.user, &mut values);
+        values
     }
 
     /// End of the run for this reason; the results up to the last output time are kept.
-    fn stop_as(&self, kind: StopKind, failed_time: f64) -> Box<Stop> {
+    fn stop_as(&self, one: &Stepper<'_>, kind: StopKind, failed_time: f64) -> Box<Stop> {
         let at_output = self.path.last();
-        let drivers = at_output.map_or(&self.last.drivers, |passed| &passed.drivers);
         Box::new(Stop {
             kind,
             last_time: at_output.map(|passed| passed.time),
             failed_time,
-            drivers: self.model.drivers.iter().zip(drivers).map(|(d, by)| d.with_sense(*by)).collect(),
+            drivers: at_output.map_or_else(|| self.reported(one), |passed| passed.reported.clone()),
             block: None,
             pivot_ratio: 1.0,
             joints: Vec::new(),

@@ -214,8 +214,17 @@ impl<'m> Stepper<'m> {
 
     /// Writes the values of the released drivers of a user's model at the accepted position.
     pub fn write_released(&self, model: &Model, values: &mut [f64]) {
+        let Mechanism { model: solved, topology, saved, .. } = &self.mechanism;
         for d in model.equilibrium.iter().flat_map(|equilibrium| &equilibrium.released) {
-            values[d.0] = model.drivers[d.0].with_sense(self.mechanism.saved.drivers[d.0][0]);
+            let driver = &model.drivers[d.0];
+            // Its coordinate, which another driver may determine in the model that is solved.
+            let freedom = solved.joints[driver.joint.0].kind.coordinates[driver.coordinate].freedom;
+            let link = topology.links.iter().find(|link| link.joint == Some(driver.joint));
+            let change = match (freedom, link) {
+                (Some(freedom), Some(link)) => saved.q[link.coordinate_of(freedom).0],
+                _ => saved.drivers[d.0][0],
+            };
+            values[d.0] = driver.with_sense(change);
         }
     }
 }

@@ -99,15 +99,8 @@ impl<'a> Walk<'a> {
         let PreparedDesign { geometry, laws, fields, .. } = design;
         let openings = analysis.openings();
         let equilibrium = openings.map(|openings| {
-            let own_drivers = analysis.model().drivers.len();
-            EquilibriumSolver::new(
-                analysis.design_map(),
-                topology,
-                &design.values,
-                openings,
-                fields,
-                own_drivers,
-            )
+            let (design_map, user) = (analysis.design_map(), analysis.model());
+            EquilibriumSolver::new(design_map, topology, &design.values, openings, fields, user)
         });
         // The openings follow the design as far as the equilibrium asks for it.
         let followed = openings.map(|(openings, _)| {

@@ -9,6 +9,10 @@ use super::blocks::{RANK_TOLERANCE, design_jacobian};
 use super::tree::choose_tree;
 use super::{CoordinateId, Formulation, JointRole, SetBy, Topology, size};
 
+/// Lever arm of an unknown coordinate, beside that of an opening, below which the opening is determined instead: the
+/// rubber at a joint gives by much less than joints move, so that it keeps its leverage.
+const POOR_LEVERAGE: f64 = 0.1;
+
 /// Tree of a mechanism whose elastic joints are open.
 pub(crate) struct OpenTree {
     /// Per joint: true if it is cut.
@@ -20,7 +24,7 @@ pub(crate) struct OpenTree {
 /// Coordinates that are not as the drivers of a model have them.
 #[derive(Debug, Default)]
 pub(crate) struct Dependence {
-    /// Openings that the constraints determine from the others.
+    /// Openings and released drivers that the constraints determine from the others.
     pub determined: Vec<DriverId>,
     /// Freedoms of joints that neither constraints nor drivers determine.
     pub free: Vec<(JointId, usize)>,
@@ -37,10 +41,13 @@ pub(crate) fn open_tree(model: &Model, preferred: &[JointId]) -> OpenTree {
     }
 }
 
-/// Finds the openings among the drivers, those from `first` on, that the constraints determine in the design
-/// configuration, and the free motions that remain.
+/// Finds the openings among the drivers, those from `first` on, and the released drivers that the constraints determine
+/// in the design configuration, and the free motions that remain.
 ///
-/// The rows are eliminated over the unknown coordinates first, then over the openings, always by the largest pivot.
+/// The rows are eliminated by the largest pivot. An opening is determined where the unknown coordinates of its rows
+/// have next to no leverage: a rod that lies nearly in line with a hinge holds the rubber of the hinge, not its angle,
+/// which it would stop following where all is in line. A released driver is an unknown coordinate like the others:
+/// which one the user released does not matter.
 pub(crate) fn dependence(model: &Model, first: DriverId) -> Dependence {
     let mut topology = choose_tree(model, Formulation::Relative, &[]);
     size::measure(model, &mut topology);
@@ -52,15 +59,17 @@ pub(crate) fn dependence(model: &Model, first: DriverId) -> Dependence {
         }
         rows.push(entries);
     }
-    let is_opening = |c: CoordinateId| match topology[c].set_by {
-        SetBy::Driver(d) => d >= first,
-        SetBy::Block { .. } => false,
-    };
     // Entries are of size one; those that are small beside the largest of all are round-off, even if no larger ones of
     // their columns remain.
     let largest = rows.iter().flat_map(BTreeMap::values).fold(0.0, |most, x| f64::max(most, x.abs()));
     let unknown: Vec<CoordinateId> = topology.unknown_coordinates().collect();
-    let pivots = eliminate(&mut rows, largest, |c| topology[c].is_unknown());
+    let released = model.equilibrium.as_ref().map_or(&[][..], |equilibrium| &equilibrium.released);
+    let weight = |c: CoordinateId| match topology[c].set_by {
+        SetBy::Block { .. } => Some(1.0),
+        SetBy::Driver(d) if d >= first => Some(POOR_LEVERAGE),
+        SetBy::Driver(d) => released.contains(&d).then_some(1.0),
+    };
+    let pivots = eliminate(rows, largest, weight);
     let (mut free, mut free_balls) = (Vec::new(), Vec::new());
     for c in unknown.iter().filter(|c| !pivots.contains(c)) {
         let link = &topology[topology[*c].link];
@@ -74,31 +83,31 @@ pub(crate) fn dependence(model: &Model, first: DriverId) -> Dependence {
             None => free_balls.push(joint),
         }
     }
-    let determined =
-        eliminate(&mut rows, largest, is_opening).into_iter().filter_map(|c| match topology[c].set_by {
-            SetBy::Driver(d) => Some(d),
-            SetBy::Block { .. } => None,
-        });
+    let determined = pivots.into_iter().filter_map(|c| match topology[c].set_by {
+        SetBy::Driver(d) => Some(d),
+        SetBy::Block { .. } => None,
+    });
     Dependence { determined: determined.collect(), free, free_balls }
 }
 
-/// Eliminates rows over the columns that count, by the largest pivot, and removes them. Returns the columns of the
+/// Eliminates rows over the columns that have a weight, by the largest weighted pivot. Returns the columns of the
 /// pivots, none of which is small beside `largest`.
 fn eliminate(
-    rows: &mut Vec<BTreeMap<CoordinateId, f64>>,
+    mut rows: Vec<BTreeMap<CoordinateId, f64>>,
     largest: f64,
-    counts: impl Fn(CoordinateId) -> bool,
+    weight: impl Fn(CoordinateId) -> Option<f64>,
 ) -> Vec<CoordinateId> {
     let mut pivots = Vec::new();
+    for row in &mut rows {
+        row.retain(|c, _| weight(*c).is_some());
+    }
     loop {
         let entries = rows.iter().enumerate().flat_map(|(r, row)| row.iter().map(move |(c, x)| (r, *c, *x)));
-        let candidates = entries.filter(|(_, c, _)| counts(*c));
+        let candidates = entries.filter(|(.., x)| x.abs() > RANK_TOLERANCE * largest);
+        let weighted = candidates.filter_map(|(r, c, x)| Some((r, c, x, x.abs() * weight(c)?)));
         // Among equals the first one, so that the choice does not depend on round-off alone.
-        let best = candidates.reduce(|best, next| if next.2.abs() > best.2.abs() { next } else { best });
-        let Some((r, column, pivot)) = best else { break };
-        if !(pivot.abs() > RANK_TOLERANCE * largest) {
-            break;
-        }
+        let best = weighted.reduce(|best, next| if next.3 > best.3 { next } else { best });
+        let Some((r, column, pivot, _)) = best else { break };
         let row = rows.swap_remove(r);
         for other in rows.iter_mut() {
             let Some(x) = other.remove(&column) else { continue };
