@@ -301,6 +301,33 @@ fn outputs_that_jump_or_have_a_kink_have_no_proved_error() {
     assert!(matches!(error, MapError::NotProved { reason: ProofError::Output(0), .. }), "{error:?}");
 }
 
+/// Piecewise functions whose branch is the same for all positions of a cell are those of the branch; the pin moves
+/// through 0 to 300 mm here.
+#[test]
+fn piecewise_expressions_have_the_bounds_of_their_branches() {
+    let measures = r#"[measures]
+plain = { type = "expression", expression = "2 * pin.x" }
+most = { type = "expression", expression = "max(pin.x, -10) + max(-10, pin.x)" }
+least = { type = "expression", expression = "min(pin.x, 1000) + min(1000, pin.x)" }
+chosen = { type = "expression", expression = "if(pin.x > -10, 2 * pin.x, 1) + if(pin.x < -10, 1, 0)" }
+low = { type = "expression", expression = "2 * pin.x + step(pin.x, 1000, 0, 1001, 5)" }
+high = { type = "expression", expression = "2 * pin.x - 3 + step(pin.x, -11, 0, -10, 3)" }
+[time]"#;
+    let model = model(&SLIDER_CRANK.replace("[time]", measures));
+    let names = ["plain", "most", "least", "chosen", "low", "high"].map(|name| (name, 1e-7));
+    let table = table(&model, &[("motor", [0.5, 2.1])], &names, Interpolation::Hermite);
+    let [plain, others @ ..] = &table.columns[..] else { panic!() };
+    for (column, (name, _)) in others.iter().zip(&names[1..]) {
+        for (found, expected) in column.numbers.iter().zip(&plain.numbers) {
+            assert!((found - expected).abs() < ROUND_OFF, "{name}: {found} {expected}");
+        }
+    }
+    let between = "[measures]\nheight = { type = \"expression\", expression = \"step(pin.x, 160, 0, 165, 3)\" }\n[time]";
+    let error =
+        refused(&SLIDER_CRANK.replace("[time]", between), &[("motor", [0.5, 2.1])], &[("height", 1e-9)]);
+    assert!(matches!(error, MapError::NotProved { reason: ProofError::Output(0), .. }), "{error:?}");
+}
+
 #[test]
 fn invalid_requests_name_the_fault_and_the_remedy() {
     let model = model(SLIDER_CRANK);
@@ -323,6 +350,10 @@ fn invalid_requests_name_the_fault_and_the_remedy() {
         (
             of(&[("motor", [0.0, 1.0])], &["pin.x"], vec![(ErrorScope::Output("pin.x".into()), 1e-20)]),
             "round-off",
+        ),
+        (
+            of(&[("motor", [0.0, 1.0])], &["pin.x"], [error(), error()].concat()),
+            "`pin.x` has two permitted errors",
         ),
     ] {
         assert!(found.contains(expected), "{found}");

@@ -165,6 +165,14 @@ impl Request {
             };
             return Err(RequestError::invalid(what, "name the output, or leave out the error"));
         }
+        let is_repeated = |k: usize| errors[..k].iter().any(|(scope, _)| *scope == errors[k].0);
+        if let Some(k) = (0..errors.len()).find(|k| is_repeated(*k)) {
+            let what = match &errors[k].0 {
+                ErrorScope::Output(name) => format!("`{name}` has two permitted errors"),
+                ErrorScope::Dimension(_) => "outputs of one unit have two permitted errors".to_owned(),
+            };
+            return Err(RequestError::invalid(what, "give one, or one for each output by its name"));
+        }
         let mut outputs = Vec::new();
         for (name, output, dimension) in known {
             let own = errors.iter().find(|(scope, _)| *scope == ErrorScope::Output(name.clone()));

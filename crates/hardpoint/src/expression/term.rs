@@ -78,31 +78,46 @@ impl<T: Real> ExpressionValue for T {
 
     #[inline(never)]
     fn smaller(self, o: Self) -> Self {
-        self.select(o, is_it(self, o, Ordering::Less))
+        match self.order(o) {
+            Some(Ordering::Less | Ordering::Equal) => self,
+            Some(Ordering::Greater) => o,
+            None => undefined(self + o),
+        }
     }
 
     #[inline(never)]
     fn greater(self, o: Self) -> Self {
-        self.select(o, is_it(self, o, Ordering::Greater))
+        match self.order(o) {
+            Some(Ordering::Greater | Ordering::Equal) => self,
+            Some(Ordering::Less) => o,
+            None => undefined(self + o),
+        }
     }
 
     #[inline(never)]
     fn step(self, x0: Self, h0: Self, x1: Self, h1: Self) -> Self {
-        let is_low = self.order(x0) == Some(Ordering::Less);
-        let is_high = !matches!(self.order(x1), None | Some(Ordering::Less));
-        let step = if is_low || is_high {
-            h0.select(h1, is_low)
-        } else {
-            // h0 + (h1 - h0) (3 u² - 2 u³)
-            let u = (self - x0) / (x1 - x0);
-            h0 + (h1 - h0) * (u * u * (T::constant(3.0) - u * 2.0))
-        };
-        step.select(undefined(self), x0.value() < x1.value())
+        if order_of_values(x0, x1) != Some(Ordering::Less) {
+            return undefined(self);
+        }
+        match (self.order(x0), self.order(x1)) {
+            (Some(Ordering::Less), _) => h0,
+            (_, Some(Ordering::Equal | Ordering::Greater)) => h1,
+            (Some(_), Some(_)) => {
+                // h0 + (h1 - h0) (3 u² - 2 u³)
+                let u = (self - x0) / (x1 - x0);
+                h0 + (h1 - h0) * (u * u * (T::constant(3.0) - u * 2.0))
+            }
+            _ => undefined(self),
+        }
     }
 
     #[inline(never)]
     fn choose(self, comparison: Relation, b: Self, x: Self, y: Self) -> Self {
-        comparison.holds(self.value(), b.value()).map_or(undefined(self), |holds| if holds { x } else { y })
+        match order_of_values(self, b) {
+            Some(order) if comparison.holds_for(order) => x,
+            Some(_) => y,
+            None => undefined(self + b),
+        }
     }
 
     #[inline(always)]
@@ -117,13 +132,10 @@ fn undefined<T: Real>(like: T) -> T {
     T::constant(f64::NAN) * like
 }
 
-/// True if `x` is at least as far on a side as `o`; or, if they do not compare, if `x` is the one that is NaN.
+/// Ordering of the values alone; of bounds of values, where it is the same for all that they contain.
 #[inline(always)]
-fn is_it<T: Real>(x: T, o: T, side: Ordering) -> bool {
-    match x.order(o) {
-        Some(order) => order == side || order == Ordering::Equal,
-        None => x.order(x).is_none(),
-    }
+fn order_of_values<T: Real>(x: T, o: T) -> Option<Ordering> {
+    x.value().partial_cmp(&o.value()).or_else(|| x.order(o))
 }
 
 /// Function of two quantities.
@@ -169,13 +181,17 @@ pub(crate) enum Relation {
 impl Relation {
     /// True if `a` compares with `b` in this way; `None` if either is NaN.
     pub(crate) fn holds(self, a: f64, b: f64) -> Option<bool> {
-        let order = a.partial_cmp(&b)?;
-        Some(match self {
+        a.partial_cmp(&b).map(|order| self.holds_for(order))
+    }
+
+    /// True if values in this order compare in this way.
+    fn holds_for(self, order: Ordering) -> bool {
+        match self {
             Self::Less => order == Ordering::Less,
             Self::LessOrEqual => order != Ordering::Greater,
             Self::Greater => order == Ordering::Greater,
             Self::GreaterOrEqual => order != Ordering::Less,
-        })
+        }
     }
 
     /// True if the comparison holds for all numbers of two ranges, false if it holds for none; `None` otherwise.
