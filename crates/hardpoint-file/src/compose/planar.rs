@@ -78,7 +78,7 @@ pub(super) fn planar(r: &mut Reader<'_>, format: &'static Table, model: &mut DeT
         return;
     };
     let at = value.span();
-    r.is_planar = true;
+    r.plane = Some(plane.word);
     for (section, value) in model.iter_mut() {
         walk("", format.shape_of(section.get_ref()), value, &mut |_, leaf| {
             if let Leaf::Pair(list) = leaf {

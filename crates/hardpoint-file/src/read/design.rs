@@ -356,13 +356,17 @@ fn moves(
             Some(["x", "y", "z"].map(|a| (format!("{name}_{a}"), axis_named(a))).into_iter().collect())
         }
         Some(word) if axis_named(word).is_none() => {
-            let known = ["x", "y", "z", "-x", "-y", "-z", "xyz"];
+            let plane = r.plane;
+            let all = plane.unwrap_or("xyz");
+            let known = ["x", "y", "z", "-x", "-y", "-z", all];
             let d = r.unknown_word(f.value.span(), &fields.subject("along"), word, &known);
             // Two coordinates, as in a plane.
             if word.len() == 2 && word.chars().all(|c| ('x'..='z').contains(&c)) {
-                d.help = Some(
-                    "did you mean `xyz`? Only a model with `planar` has points of two coordinates".into(),
-                );
+                let why = match plane {
+                    Some(_) => "It is the plane of the model",
+                    None => "Only a model with `planar` has points of two coordinates",
+                };
+                d.help = Some(format!("did you mean `{all}`? {why}"));
             }
             None
         }

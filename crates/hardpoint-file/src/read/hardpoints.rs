@@ -8,7 +8,7 @@ use crate::values::{EntryPlace, Fields, Reader, Subject, above_tables, shown};
 use super::raw::Raw;
 
 pub(super) fn hardpoints(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
-    let example = if r.is_planar { "[100.0, -50.5]" } else { "[100.0, 0, -50.5]" };
+    let example = if r.plane.is_some() { "[100.0, -50.5]" } else { "[100.0, 0, -50.5]" };
     for (name, at, value) in r.entries(model, "hardpoints", "hardpoint") {
         let subject = Subject {
             name: format!("hardpoint `{name}`"),

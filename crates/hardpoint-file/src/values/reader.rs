@@ -26,8 +26,8 @@ pub(crate) struct Reader<'s> {
     /// Texts of these files that were read, by their names in the model.
     pub texts: Texts,
     pub units: Units,
-    /// True if points may have two coordinates.
-    pub is_planar: bool,
+    /// Name of the plane of a model whose points may have two coordinates.
+    pub plane: Option<&'static str>,
     /// Values of the file's parameters, once they are read.
     pub nominal: Nominal,
     /// Parameters of the current law that are given by expressions, with these expressions.
@@ -43,8 +43,8 @@ impl<'s> Reader<'s> {
     pub fn new(source: &'s Source, folder: Folder<'s>) -> Self {
         let (units, nominal) = (Units::default(), Nominal::default());
         let (texts, law_formulas, found, unread, remarks) = Default::default();
-        let is_planar = false;
-        Self { source, folder, texts, units, is_planar, nominal, law_formulas, found, unread, remarks }
+        let plane = None;
+        Self { source, folder, texts, units, plane, nominal, law_formulas, found, unread, remarks }
     }
 }
 

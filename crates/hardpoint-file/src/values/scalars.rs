@@ -216,7 +216,7 @@ impl Reader<'_> {
 
     /// Global coordinates, in m. `or` describes what else is permitted.
     pub fn coordinates(&mut self, value: &Value<'_>, subject: &Subject, or: &str) -> Option<Vec3> {
-        let [expected, count] = match self.is_planar {
+        let [expected, count] = match self.plane.is_some() {
             // The third of two coordinates was added before.
             true => ["two or three coordinates", "2 or 3"],
             false => ["three coordinates", "3"],

@@ -188,6 +188,10 @@ fn broken_planar_models() {
             six_lines() + "measures.height = { type = \"position\", point = \"C\", along = \"y\" }\n",
         ),
         ("body_of_points_in_space", with("planar = \"xy\"\n", "")),
+        (
+            "planar_variable_along_another_plane",
+            with("\"xy\"", "\"xz\"") + "design.b = { move = \"B\", along = \"xy\" }\n",
+        ),
     ] {
         snapshot(name, &text);
     }
