@@ -1,12 +1,13 @@
 import { readFileSync } from 'node:fs'
 import type { Page } from 'playwright-core'
 import { describe, expect, inject, test } from 'vitest'
+import { NO_3D } from './browser'
 import { pages, ready, settled } from './pages'
 
 const { models } = inject('samples')
 
 let page: Page
-const visit = pages()
+const visit = pages(NO_3D)
 const open = async (name: string) => {
   page = await visit(models[name])
   await ready(page)

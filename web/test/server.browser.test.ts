@@ -4,9 +4,9 @@ import { tmpdir } from 'node:os'
 import { join } from 'node:path'
 import type { Browser, Page } from 'playwright-core'
 import { afterAll, afterEach, beforeAll, beforeEach, expect, inject, test } from 'vitest'
-import { launch, visit } from './browser'
+import { launch, NO_3D, visit } from './browser'
 import { WAIT } from './limits'
-import { drawn, frames } from './person'
+import { frames } from './person'
 
 const { hardpoint, models } = inject('samples')
 const MODELS = join(import.meta.dirname, '../../models')
@@ -14,6 +14,8 @@ const STUDIES = join(MODELS, 'studies')
 const TOKEN = 'a-token-of-this-test'
 
 let browser: Browser
+/** Without a view, for tests that do not look at it. */
+let flat: Browser
 let folder: string
 let file: string
 let text: string
@@ -37,8 +39,8 @@ function stop(): Promise<void> {
 }
 
 /** The page at an address, and its errors other than unanswered requests. */
-async function open(address: string, isModel = true): Promise<Page> {
-  const page = await browser.newPage({ viewport: { width: 1400, height: 900 } })
+async function open(address: string, isModel = true, within = flat): Promise<Page> {
+  const page = await within.newPage({ viewport: { width: 1400, height: 900 } })
   page.setDefaultTimeout(WAIT)
   page.on('pageerror', (error) => faults.push(error.message))
   page.on(
@@ -55,9 +57,9 @@ async function open(address: string, isModel = true): Promise<Page> {
 const faults: string[] = []
 
 beforeAll(async () => {
-  browser = await launch()
+  ;[browser, flat] = await Promise.all([launch(), launch(NO_3D)])
 })
-afterAll(() => browser?.close())
+afterAll(() => Promise.all([browser?.close(), flat?.close()]))
 beforeEach(() => {
   folder = mkdtempSync(join(tmpdir(), 'hardpoint-studio-'))
   file = join(folder, 'strut.toml')
@@ -66,17 +68,17 @@ beforeEach(() => {
   faults.length = 0
 })
 afterEach(async () => {
+  const contexts = [browser, flat].flatMap((one) => one.contexts())
+  await Promise.all(contexts.map((context) => context.close()))
   await stop()
   rmSync(folder, { recursive: true })
   expect(faults).toEqual([])
 })
 
 test('a page from a file has nothing that only a server can do', async () => {
-  const { page, complaints } = await visit(browser, models.macpherson)
-  await drawn(page)
+  const { page, complaints } = await visit(flat, models.macpherson)
   expect(await page.getByTestId('server').count()).toBe(0)
   expect(complaints).toEqual([])
-  await page.context().close()
 })
 
 test('the token is not in the address, and the page knows its model and its cases', async () => {
@@ -186,7 +188,7 @@ test('a change that the text cannot have is not saved, and the page says why unt
 
 test('points that are clicked on the picture become a task, whose answers are listed with their pages', async () => {
   copyFileSync(join(MODELS, 'jansen.toml'), join(folder, 'jansen.toml'))
-  const page = await open(await start(0, 'jansen.toml'))
+  const page = await open(await start(0, 'jansen.toml'), true, browser)
   await page.waitForFunction(() => document.getElementById('page')!.dataset.engine === 'ready')
   await page.getByTestId('path-points').click()
   expect(await page.getByTestId('path-run').isDisabled()).toBe(true)

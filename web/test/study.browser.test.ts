@@ -3,11 +3,12 @@ import { describe, expect, inject, test, vi } from 'vitest'
 import { valueContent } from '../src/page/contents'
 import { crossings } from '../src/curve'
 import { State } from '../src/state'
+import { NO_3D } from './browser'
 import { pages } from './pages'
 import { reportOf } from './payload'
 
 const { tolerance } = inject('samples')
-const open = pages()
+const open = pages(NO_3D)
 
 /** A metric of a curve is interpolated by splines, the table of values by straight lines. */
 const INTERPOLATION = 1e-3

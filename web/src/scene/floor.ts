@@ -17,6 +17,7 @@ import {
 import { roundBelow } from '../format'
 import { across } from './flat'
 import type { Mechanism } from './mechanism'
+import { OVER } from './outlines'
 import type { Palette } from './palette'
 
 /** Visible radius of the grid, and its strength for a planar mechanism, relative to its reach and colour. */
@@ -51,6 +52,8 @@ export class Floor {
     sun.target.position.copy(centre)
     const sky = new HemisphereLight(0xffffff, light.earth, light.sky)
     sky.position.copy(plane ?? up)
+    // Programs depend on the lights: with others, or none, what is over the parts would need programs of its own.
+    for (const light of [sun, sky]) light.layers.enable(OVER)
     this.object.add(sky, sun, sun.target, this.#grid(middle, normal, reach, plane !== undefined, palette))
     if (plane) return
 

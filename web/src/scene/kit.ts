@@ -17,6 +17,7 @@ import {
   Mesh,
   MeshBasicMaterial,
   MeshLambertMaterial,
+  type MeshLambertMaterialParameters,
   type Object3D,
   Path,
   Quaternion,
@@ -88,16 +89,13 @@ export class Kit {
   solid(colour: string, { opacity = 1, open = false, facets = false }: Finish = {}): Material {
     return this.#material(`solid ${colour} ${opacity} ${open} ${facets}`, () => {
       const clear = opacity < 1
-      return new MeshLambertMaterial({
+      return lit({
         color: colour,
         transparent: clear,
         opacity,
         depthWrite: !clear,
         side: clear || open ? DoubleSide : FrontSide,
         flatShading: facets,
-        polygonOffset: true,
-        polygonOffsetFactor: 1,
-        polygonOffsetUnits: 1,
       })
     })
   }
@@ -308,16 +306,7 @@ export class Kit {
     const up = square(y, unit)
     geometry.applyMatrix4(new Matrix4().makeBasis(unit, up, unit.clone().cross(up)).setPosition(at))
     const mesh = this.mesh(geometry, this.palette.ground)
-    mesh.material = this.#material(
-      'hatched',
-      () =>
-        new MeshLambertMaterial({
-          map: this.#hatching(),
-          polygonOffset: true,
-          polygonOffsetFactor: 1,
-          polygonOffsetUnits: 1,
-        }),
-    )
+    mesh.material = this.#material('hatched', () => lit({ map: this.#hatching() }))
     return mesh
   }
 
@@ -408,6 +397,20 @@ export class Kit {
     this.#geometries.push(geometry)
     return geometry
   }
+}
+
+/** Parts cast shadows on the floor only; without code for shadows on themselves their programs are half as long. */
+function unshaded(program: { vertexShader: string; fragmentShader: string }): void {
+  program.vertexShader = `#undef USE_SHADOWMAP\n${program.vertexShader}`
+  program.fragmentShader = `#undef USE_SHADOWMAP\n${program.fragmentShader}`
+}
+
+/** A lit material of a part, on whose edges lines can be drawn. */
+function lit(parameters: MeshLambertMaterialParameters): MeshLambertMaterial {
+  const behindLines = { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 }
+  const material = new MeshLambertMaterial({ ...parameters, ...behindLines })
+  material.onBeforeCompile = unshaded
+  return material
 }
 
 /** Puts an object made along y in its place, along `axis`. */
