@@ -17,6 +17,14 @@ def where(path: str | os.PathLike) -> str:
         raise UsageError.saying(f"a path is a text or a `pathlib.Path`, not {path!r}") from None
 
 
+def target(path: str | os.PathLike) -> Path:
+    """The path of a file that is written."""
+    name = where(path)
+    if not Path(name).name or "\0" in name:
+        raise FileError.saying(f"`{name}` cannot be written: it does not name a file")
+    return Path(name)
+
+
 def write(path: str | os.PathLike, text: str) -> None:
     """Writes a text atomically."""
     write_bytes(path, text.encode())
@@ -24,7 +32,7 @@ def write(path: str | os.PathLike, text: str) -> None:
 
 def write_bytes(path: str | os.PathLike, contents: bytes) -> None:
     """Writes a file atomically."""
-    path = Path(where(path))
+    path = target(path)
     beside = path.with_name(f".{path.name}.{os.getpid()}.partial")
     try:
         with open(beside, "wb") as out:

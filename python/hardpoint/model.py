@@ -812,6 +812,9 @@ def _law(name: str, law: Any, times: np.ndarray) -> Any:
     values = numbers(f"law of `{name}`", law)
     if values.shape != times.shape:
         raise UsageError.saying(f"the law of `{name}` has a value for each of the {len(times)} output times; the shape given is {values.shape}")
+    if len(values) == 1:
+        # A table has at least two points.
+        return float(values[0])
     return {"type": "table", "points": np.column_stack([times, values]).tolist()}
 
 

@@ -22,13 +22,13 @@ import numpy as np
 
 from . import _native, files
 from .arguments import by_name, count, instance, listed, named, number, numbers
-from .errors import Diagnostic, HardpointError, ModelError, MotionStopped, StudyError, TopologyError, UsageError
+from .errors import Diagnostic, FileError, HardpointError, ModelError, MotionStopped, StudyError, TopologyError, UsageError
 from .studies import DriverTable, Study
 
 if TYPE_CHECKING:
     from .model import Model
 
-CODES: dict[int, type[HardpointError]] = {2: UsageError, 3: ModelError, 4: TopologyError, 5: MotionStopped}
+CODES: dict[int, type[HardpointError]] = {2: UsageError, 3: ModelError, 4: TopologyError, 5: MotionStopped, 6: FileError}
 """Classes of errors by the command's exit codes."""
 FELL_SHORT = 1
 """Exit code of a command that has a result, but not the requested one."""
@@ -82,10 +82,13 @@ def _rendered(one: dict) -> str:
 def saved(model: Model) -> Iterator[Path]:
     """The model as a file: its own one if that has the same text, or else one in a temporary folder, with the files that it names."""
     own = Path(model.file)
+    is_current = False
     with contextlib.suppress(OSError, UnicodeDecodeError):
-        if own.read_bytes().decode() == model.text:
-            yield own
-            return
+        is_current = own.read_bytes().decode() == model.text
+    # Errors of the caller about its own files are not suppressed.
+    if is_current:
+        yield own
+        return
     with tempfile.TemporaryDirectory() as folder:
         texts = model._native.files
         for name in {*texts, *model._native.file_names}:
@@ -115,7 +118,7 @@ def _study(model: Model, found: dict[str, Any]) -> Study:
 
 def export(model: Model, path: str | os.PathLike, format: str | None) -> dict[str, Any]:
     with saved(model) as file:
-        return facts("export", file, "-o", os.path.abspath(files.where(path)), *([] if format is None else ["--format", format]))
+        return facts("export", file, "-o", os.path.abspath(files.target(path)), *([] if format is None else ["--format", format]))
 
 
 def clearance(model: Model, case: str | None, proof: bool) -> Study:
@@ -136,7 +139,7 @@ def envelope(
     for name, value in (("error", error), ("margin", margin)):
         options += [] if value is None else [f"--{name}={number(f'`{name}`', value)}"]
     with saved(model) as file:
-        return _study(model, facts("envelope", file, shape, *_case(model, case), *options, "-o", os.path.abspath(files.where(path))))
+        return _study(model, facts("envelope", file, shape, *_case(model, case), *options, "-o", os.path.abspath(files.target(path))))
 
 
 def table(
@@ -147,11 +150,16 @@ def table(
     interpolation: str | None,
     path: str | os.PathLike | None,
 ) -> DriverTable:
+    ranges = by_name("over", over)
+    if not ranges:
+        raise UsageError.saying("`over` names no driver; give both ends of one to three of them, such as `{'travel': (-40, 40)}`")
     if isinstance(error, Mapping):
+        if not error:
+            raise UsageError.saying("`error` names no output; give the permitted error of each, or a number for all of them")
         options = [f"--error={name}={_permitted(value)}" for name, value in error.items()]
     else:
         options = [f"--error={_permitted(error)}"]
-    for name, ends in by_name("over", over).items():
+    for name, ends in ranges.items():
         try:
             first, last = ends
         except (TypeError, ValueError):
@@ -160,7 +168,7 @@ def table(
     options += [f"--of={name}" for name in listed("of", of)]
     options += [] if interpolation is None else [f"--interpolation={interpolation}"]
     with saved(model) as file, tempfile.TemporaryDirectory() as folder:
-        to = Path(folder, "table.json") if path is None else os.path.abspath(files.where(path))
+        to = Path(folder, "table.json") if path is None else os.path.abspath(files.target(path))
         return DriverTable(facts("map", file, *options, "-o", to)["map"])
 
 
@@ -247,7 +255,7 @@ def new(
     """
     from .model import read
 
-    path = Path(files.where(path))
+    path = files.target(path)
     target = path if path.suffix == ".toml" else path.with_name(path.name + ".toml")
     with tempfile.TemporaryDirectory() as folder:
         options = ["--template", template]
@@ -287,7 +295,7 @@ def import_model(
 
     options = [] if format is None else ["--format", format]
     closings = listed("close", close)
-    found = facts("import", os.path.abspath(files.where(source)), "-o", os.path.abspath(files.where(path)), *options, *(f"--close={one}" for one in closings))
+    found = facts("import", os.path.abspath(files.where(source)), "-o", os.path.abspath(files.target(path)), *options, *(f"--close={one}" for one in closings))
     return read(path), found
 
 

@@ -176,6 +176,38 @@ def test_errors_of_files_name_the_file_of_the_user(strut, tmp_path):
         run.save(5)
 
 
+def test_every_file_that_cannot_be_written_is_an_error_of_files(strut, tmp_path):
+    # The command makes the folders of its files.
+    none = tmp_path / "none"
+    none.write_text("a file, no folder")
+    strut.export(tmp_path / "strut.xml", format="mjcf")
+    ranges = {"strut_drive": (-1, 1), "rack_drive": (-1, 1)}
+    for write in (
+        lambda: strut.export(none / "strut.xml", format="mjcf"),
+        lambda: hardpoint.import_model(tmp_path / "strut.xml", none / "strut.toml"),
+        lambda: strut.table(ranges, "toe", error="1deg", path=none / "toe.csv"),
+    ):
+        with pytest.raises(hardpoint.FileError, match="cannot be written") as raised:
+            write()
+        assert isinstance(raised.value, OSError) and raised.value.code == "HP0601"
+
+
+@pytest.mark.parametrize("path", ["", ".", "/", "a\0b"])
+def test_a_path_without_the_name_of_a_file_is_an_error_of_files(strut, path):
+    run = strut.run(times=[0.0, 0.1])
+    for write in (
+        run.save,
+        strut.save,
+        run.page().save,
+        lambda path: strut.export(path, format="mjcf"),
+        lambda path: hardpoint.import_model("strut.xml", path),
+        lambda path: hardpoint.new(path, "four-bar"),
+        lambda path: strut.table({"strut_drive": (-1, 1)}, "toe", error="1deg", path=path),
+    ):
+        with pytest.raises(hardpoint.FileError, match="cannot be written: it does not name a file"):
+            write(path)
+
+
 def test_a_damaged_run_is_refused(strut, tmp_path):
     path = tmp_path / "strut.npz"
     strut.run(times=[0.0, 0.1]).save(path)

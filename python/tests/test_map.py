@@ -120,6 +120,8 @@ def test_mistakes_with_tables_are_named(model):
         (lambda: table("toe"), "give `spring_drive`"),
         (lambda: table("toe", spring_drive=25), "outside of the table's range -16 .. 24"),
         (lambda: table("toe", spring_drive=math.nan), "outside"),
+        (lambda: of.table({}, error=1), "`over` names no driver"),
+        (lambda: of.table({"spring_drive": (0, 1)}, of="toe", error={}), "`error` names no output"),
         (lambda: of.table({"spring_drive": 3}, error=1), "both of its ends"),
         (lambda: of.table({"spring": (0, 1)}, error=1), "spring"),
         (lambda: of.table({"spring_drive": (0, 1)}, of="toe", error="1 furlong"), "furlong"),

@@ -160,6 +160,9 @@ def test_laws_as_arrays_pass_through_their_values(strut):
     assert (run.times == times).all()
     for k in (0, 4, 8):
         assert run.values("toe")[k] == pytest.approx(strut.at(strut_drive=values[k])["toe"], rel=1e-9)
+    # A single output time
+    single = strut.run(times=[0.5], laws={"strut_drive": values[:1] + 3, "rack_drive": [0]})
+    assert single.values("toe").tolist() == strut.run(times=[0.5], laws={"strut_drive": 3, "rack_drive": 0}).values("toe").tolist()
     assert strut.run(times={"end": 1, "steps": 4}).times.tolist() == [0, 0.25, 0.5, 0.75, 1]
 
 

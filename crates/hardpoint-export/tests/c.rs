@@ -32,7 +32,7 @@ const REFUSED: [(&str, &str); 2] =
 /// Models whose motion the formulas do not follow to the end, and the reported time.
 const ENDS: [(&str, &str); 1] = [("bricard", "from t =")];
 
-/// Measures that are undefined at some output times: their formulas take another case there.
+/// Measures that are undefined or have a kink at some output times.
 const PARTIAL: [&str; 2] = ["front_axle: front.ackermann_error", "front_axle: front.ackermann"];
 
 fn model(name: &str) -> ModelFile {
@@ -340,6 +340,26 @@ fn what_is_not_written_is_reported() {
     let variables = exported.unsupported.iter().find(|u| u.kind == "design variables");
     let expected = (!file.model.variables.is_empty()).then(|| file.model.variables.len().to_string());
     assert_eq!(variables.map(|u| u.name.clone()), expected);
+}
+
+/// The articulation of a ball joint has no rate where it is zero, which is at the first of the output times.
+#[test]
+fn a_measure_with_a_kink_at_an_output_time_is_reported_with_that_reason() {
+    let text = r#"name = "kink"
+units = { length = "mm", angle = "deg" }
+hardpoints.A = [0, 0, 0]
+bodies.arm = {}
+joints.hinge = { type = "revolute", bodies = ["ground", "arm"], at = "A", axis = "z" }
+joints.ball = { type = "spherical", bodies = ["ground", "arm"], at = "A" }
+drivers.motor = { joint = "hinge", law = "10 * t" }
+measures.angle = { type = "articulation", joint = "ball" }
+time = { end = 1, steps = 4 }
+"#;
+    let file = hardpoint_file::parse(text, "kink.toml").unwrap_or_else(|e| panic!("{e}"));
+    let exported = Format::named("c").unwrap().export(&file, "kink").unwrap();
+    let why: Vec<&str> =
+        exported.unsupported.iter().filter(|u| u.name == "angle").map(|u| u.why.as_str()).collect();
+    assert_eq!(why, ["NaN at 1 of 5 output times, where it is undefined or has a kink"]);
 }
 
 /// Models with design variables that are not arguments, with the reason.

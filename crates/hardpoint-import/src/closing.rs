@@ -52,17 +52,23 @@ impl FromStr for Closing {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let mut rest = text.trim();
-        // Names of frames in SDFormat may contain `::`.
         let suffix = |rest: &mut &str, known: &[&'static str]| {
-            let (before, last) = rest.rsplit_once(':').filter(|(before, _)| !before.ends_with(':'))?;
+            let (before, last) = last_word(rest)?;
             let found = known.iter().position(|k| *k == last)?;
             *rest = before;
             Some(found)
         };
         let axis = suffix(&mut rest, &AXES);
         let kind = suffix(&mut rest, &TYPES);
+        // `A=B:revolute:q`, whose last word is no axis
+        let is_type = |word: &str| TYPES.contains(&word);
+        let word_before_last = last_word(rest).and_then(|(before, _)| last_word(before));
+        let is_understood = match kind {
+            Some(_) => true,
+            None => axis.is_none() && !word_before_last.is_some_and(|(_, word)| is_type(word)),
+        };
         let ends = rest.split_once('=').map(|(a, b)| [a, b].map(end));
-        let (Some([Some(a), Some(b)]), true) = (ends, axis.is_none() || kind.is_some()) else {
+        let (Some([Some(a), Some(b)]), true) = (ends, is_understood) else {
             return Err(format!(
                 "`{text}` does not name two frames: write `A=B`, `A=B:TYPE` with a type of {}, or `A=B:TYPE:AXIS` with x, y or z of frame A; \
                  a point in a frame follows its name, as in `A@0.2,0,0=B`",
@@ -72,6 +78,11 @@ impl FromStr for Closing {
         let (frames, places) = ([a.0, b.0], [a.1, b.1]);
         Ok(Self { frames, places, kind: TYPES[kind.unwrap_or(0)], axis: axis.unwrap_or(2) })
     }
+}
+
+/// Splits a text at its last colon; names of frames in SDFormat may contain `::`.
+fn last_word(text: &str) -> Option<(&str, &str)> {
+    text.rsplit_once(':').filter(|(before, _)| !before.ends_with(':'))
 }
 
 /// Parses a frame and a point in it: `NAME`, or `NAME@x,y,z`.

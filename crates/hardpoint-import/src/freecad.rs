@@ -488,8 +488,10 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             self.notes.refused("limits", label, at, why);
         }
         for (of, range) in limits {
-            self.m.joints[number].limit(of, range);
-            self.notes.taken("limits", label, at);
+            match self.m.joints[number].limit(of, range) {
+                Ok(()) => self.notes.taken("limits", label, at),
+                Err(why) => self.notes.refused("limits", label, at, why),
+            }
         }
         self.joints.insert(joint, MarkerJoint { number, kind: type_name, markers: [i, j] });
     }

@@ -135,7 +135,7 @@ pub fn join(
                 );
                 return None;
             };
-            awry = a.dot(b).abs() > AWRY;
+            awry = !has_perpendicular_axes([i, j]);
             joint = joint.with_axes(a, square);
             open = kind == "universal" && gap.norm() > APART * reach;
         }
@@ -201,6 +201,33 @@ const SAID: f64 = 1e-6;
 /// Returns true if a specified length equals that in the design configuration.
 pub fn equals_nominal(m: &Mechanism, specified: f64, nominal: f64) -> bool {
     (specified - nominal).abs() <= SAID * m.size().max(specified.abs())
+}
+
+/// Returns true if the z axes of two markers are perpendicular but for missing digits.
+pub fn has_perpendicular_axes([i, j]: [Marker; 2]) -> bool {
+    i.z().dot(j.z()).abs() <= AWRY
+}
+
+/// Adds two hinges in series with a body of their own between them: about z of the marker on body i, then about z of
+/// the marker on body j, both through the origin of the second marker. Returns the indices of the hinges.
+pub fn join_by_hinges(
+    m: &mut Mechanism,
+    notes: &mut ImportLog,
+    source: ElementSource<'_>,
+    [i, j]: [Marker; 2],
+) -> Option<[usize; 2]> {
+    if i.body == j.body {
+        notes.refused(source.kind, source.name, source.at, "its markers are on the same body");
+        return None;
+    }
+    let link = m.body(&format!("{}_link", source.name), source.note(notes), Some(j.pose));
+    let mut hinge = |end: &str, bodies, axis| {
+        let name = format!("{}_{end}", source.name);
+        m.joint(Joint::new(&name, source.note(notes), "revolute", bodies, j.pose.r).along(axis))
+    };
+    let hinges = [hinge("i", [i.body, link], i.z()), hinge("j", [link, j.body], j.z())];
+    notes.taken(source.kind, source.name, source.at);
+    Some(hinges)
 }
 
 /// Adds two joints with a link between them that has its own body: the parts keep a distance between two axes, or

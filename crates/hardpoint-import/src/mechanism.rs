@@ -564,11 +564,18 @@ impl Joint {
         self.limits.iter().find(|limit| limit.of == coordinate).map(|limit| limit.range)
     }
 
-    /// Adds a limit, unless the range is empty or open at both ends.
-    pub fn limit(&mut self, of: &'static str, range: [f64; 2]) {
-        if range[0] < range[1] && range.iter().any(|x| x.is_finite()) {
+    /// Adds a limit, unless the range is open at both ends.
+    ///
+    /// # Errors
+    /// Returns the reason why the range is not that of a joint that moves.
+    pub fn limit(&mut self, of: &'static str, range: [f64; 2]) -> Result<(), &'static str> {
+        if range[0] >= range[1] {
+            return Err("its lower end is not below its upper end: the joint gets no limit");
+        }
+        if range.iter().any(|x| x.is_finite()) {
             self.limits.push(JointLimit { of, range });
         }
+        Ok(())
     }
 
     /// Sets the axis.

@@ -569,13 +569,21 @@ impl<'d, 'n> Reader<'d, 'n> {
             let [zero] = self.numbers::<1>(element, "ref", class).unwrap_or_default();
             let range = self.range(element, class);
             let scaled = |x: f64| if coordinate == Some("angle") { self.angle(x - zero) } else { x - zero };
+            // A range from 0 to 0 is one that is not given, unless `limited` asks for it.
+            let range = range.filter(|ends| *ends != [0.0; 2] || limited == "true");
             let limit = match (range, coordinate) {
                 (Some(ends), Some(of)) => Some((of, ends.map(scaled))),
                 // The range of a ball is that of its rotation from the design configuration, from 0 on.
-                (Some([_, most]), None) => Some(("articulation", [f64::NEG_INFINITY, self.angle(most)])),
+                (Some([least, most]), None) if least < most => {
+                    Some(("articulation", [f64::NEG_INFINITY, self.angle(most)]))
+                }
+                (Some(empty), None) => Some(("articulation", empty)),
                 (None, _) => None,
             };
-            limit.into_iter().for_each(|(of, range)| self.m.joints[number].limit(of, range));
+            let limit = limit.map(|(of, range)| self.m.joints[number].limit(of, range));
+            if let Some(Err(why)) = limit {
+                self.notes.refused("range", &name, at, why);
+            }
         }
         let coordinate = coordinate.map(|name| Coordinate { joint: number, name });
         self.spring(element, class, source, coordinate);

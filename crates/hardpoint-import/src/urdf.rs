@@ -417,7 +417,10 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         let coordinate = self.joints.get(&j.name).filter(|c| c.joint == number && j.kind != "continuous");
         if let (Some(coordinate), Some(ends)) = (coordinate, j.limits) {
             let of = coordinate.name;
-            self.m.joints[number].limit(of, ends.map(|x| x - nominal));
+            if let Err(why) = self.m.joints[number].limit(of, ends.map(|x| x - nominal)) {
+                let at = child(j.node, "limit").and_then(|limit| xml::at(0, limit));
+                self.notes.refused("limit", &j.name, at, why);
+            }
         }
         if j.kind == "screw" {
             self.m.joints[number].lead = j.pitch.filter(|p| *p != 0.0);

@@ -363,12 +363,12 @@ pub fn bound(text: &str, what: &str, at: Option<SourceSpan>, notes: &mut ImportL
     value
 }
 
-/// Returns the range between two bounds, infinite for numbers beyond [`UNLIMITED`]; `None` if it is empty or open at
-/// both ends, since such bounds mean no limit.
+/// Returns the range between two bounds, infinite for numbers beyond [`UNLIMITED`]; `None` if it is open at both ends,
+/// since such bounds mean no limit. A range may be empty.
 pub fn range(low: f64, high: f64) -> Option<[f64; 2]> {
     let end = |x: f64| if x.abs() < UNLIMITED { x } else { x.signum() * f64::INFINITY };
     let range = [low, high].map(end);
-    (range[0] < range[1] && range.iter().any(|x| x.is_finite())).then_some(range)
+    range.iter().any(|x| x.is_finite()).then_some(range)
 }
 
 /// Returns the position of an attribute's value.

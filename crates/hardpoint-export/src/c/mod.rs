@@ -158,18 +158,7 @@ pub fn generate(
         };
         out.report_unsupported("motion", &format!("from t = {t} s"), why);
     }
-    for measure in &measures.list {
-        if let MeasureSource::Formulas(k) = measure.from
-            && undefined[k] > 0
-        {
-            let why = format!(
-                "NaN at {} of {} output times, where its formula takes another case than at the first",
-                undefined[k],
-                model.times.len()
-            );
-            out.report_unsupported("measure", &measure.output.name, why);
-        }
-    }
+    report_undefined(&analysis, &measures, &undefined, out);
     let start = step.drivers.iter().map(|d| d.start).collect();
     let source = Source {
         file,
@@ -186,6 +175,44 @@ pub fn generate(
     let (header, origin) = (source.header(sizes), source.origin());
     let Source { name, measures: Measures { list: measures, .. }, design, .. } = source;
     Ok(MotionSource { source: text, header, name, measures, design, start, origin })
+}
+
+/// Reports the measures that are NaN at some output times.
+fn report_undefined(
+    analysis: &Analysis<'_>,
+    measures: &Measures,
+    undefined: &[Vec<usize>],
+    out: &mut ExportedModel,
+) {
+    let partial = measures.list.iter().filter_map(|measure| match measure.from {
+        MeasureSource::Formulas(k) => Some((measure, &undefined[k])),
+        MeasureSource::Step(_) => None,
+    });
+    let partial: Vec<_> = partial.filter(|(_, times)| !times.is_empty()).collect();
+    if partial.is_empty() {
+        return;
+    }
+    let solution = analysis.solve(Run::new().without_sensitivities());
+    for (measure, times) in partial {
+        let name = &measure.output.name;
+        // The engine has no rates at a kink either.
+        let is_kink = |k: &&usize| {
+            let column = solution.measured.index(name).filter(|_| **k < solution.motion.len());
+            let values = column.map(|column| solution.measured.value(**k, column));
+            let known = measure.output.known.orders;
+            values.is_some_and(|values| values.iter().take(known).any(|x| x.is_nan()))
+        };
+        let kinks = times.iter().filter(is_kink).count();
+        let of = |count: usize, why: &str| {
+            (count > 0)
+                .then(|| format!("NaN at {count} of {} output times, {why}", analysis.model().times.len()))
+        };
+        let why = [
+            of(kinks, "where it is undefined or has a kink"),
+            of(times.len() - kinks, "where its formula takes another case than in the design configuration"),
+        ];
+        out.report_unsupported("measure", name, why.into_iter().flatten().collect::<Vec<_>>().join("; "));
+    }
 }
 
 /// Design variables that are arguments; the others are reported, and keep their nominal values.

@@ -16,8 +16,8 @@ const LEAST_PIVOT: f64 = 1e-12;
 pub struct ReplayResult {
     /// First output time that the formulas do not reach, if any.
     pub end: Option<f64>,
-    /// Per output: number of output times at which its formula is undefined.
-    pub undefined: Vec<usize>,
+    /// Per output: output times at which its formula is undefined.
+    pub undefined: Vec<Vec<usize>>,
     /// Largest residual of a constraint at the output times, rad or sizes of loops.
     pub residual: f64,
 }
@@ -34,10 +34,10 @@ pub fn replay(model: &Model, step: &DrivenStep, formulas: Option<&MeasureFormula
     // The nominal design.
     replay.inputs.extend(step.design.iter().map(|_| 0.0));
     let outputs = formulas.map_or(0, |f| f.program.outputs.len());
-    let mut undefined = vec![0; outputs / 4];
+    let mut undefined = vec![Vec::new(); outputs / 4];
     let mut residual: f64 = 0.0;
     let (mut inputs, mut found) = (Vec::new(), vec![0.0; outputs]);
-    for &t in &model.times {
+    for (k, &t) in model.times.iter().enumerate() {
         let of = |driver: &Driver| {
             let [value, rate, acceleration, _] = driver.law.at(t).derivatives();
             [value, rate, acceleration]
@@ -53,9 +53,11 @@ pub fn replay(model: &Model, step: &DrivenStep, formulas: Option<&MeasureFormula
         formulas.bodies.iter().for_each(|b| inputs.extend(&bodies[BODY * (b - 1)..][..BODY]));
         inputs.resize(formulas.program.inputs, 0.0);
         formulas.program.evaluate(&inputs, &[], &mut replay.values, &mut found);
-        for (count, guard) in undefined.iter_mut().zip(&found) {
+        for (times, guard) in undefined.iter_mut().zip(&found) {
             // NaN is undefined.
-            *count += usize::from(!(*guard <= 0.0));
+            if !(*guard <= 0.0) {
+                times.push(k);
+            }
         }
     }
     ReplayResult { end: None, undefined, residual }

@@ -133,6 +133,23 @@ impl<'d> Reader<'d, '_> {
     /// Returns an attribute of an element or its default, with its position.
     pub(super) fn attribute(
         &self,
+        element: Element<'d>,
+        key: &str,
+        class: Option<&str>,
+    ) -> Option<(String, Option<SourceSpan>)> {
+        let defaults = match element.1.tag_name().name() {
+            "freejoint" => "",
+            "spatial" | "fixed" => "tendon",
+            name => name,
+        };
+        self.attribute_of(defaults, element, key, class)
+    }
+
+    /// Returns an attribute of an element or its default, with its position. The defaults are those of this element of
+    /// a class.
+    pub(super) fn attribute_of(
+        &self,
+        defaults: &str,
         (text, node): Element<'d>,
         key: &str,
         class: Option<&str>,
@@ -141,14 +158,7 @@ impl<'d> Reader<'d, '_> {
             return Some((value.to_owned(), xml::attribute_at(text, node, key)));
         }
         let class = node.attribute("class").or(class).unwrap_or("main");
-        let defaults = self.classes.get(class)?;
-        let element = match node.tag_name().name() {
-            "connect" | "weld" => "equality",
-            "freejoint" => "",
-            "spatial" | "fixed" => "tendon",
-            name => name,
-        };
-        let value = defaults.get(&(element.to_owned(), key.to_owned()))?;
+        let value = self.classes.get(class)?.get(&(defaults.to_owned(), key.to_owned()))?;
         Some((value.clone(), xml::at(text, node)))
     }
 

@@ -56,7 +56,9 @@ impl<'d> Reader<'d, '_> {
             let kind = node.tag_name().name();
             let at = xml::at(text, node);
             let name = node.attribute("name").map_or_else(|| format!("{kind}_{}", k + 1), str::to_owned);
-            if self.attribute(element, "active", None).is_some_and(|(a, _)| a == "false") {
+            // Equalities of joints and tendons share the element names of joints and tendons, but not their defaults.
+            let active = self.attribute_of("equality", element, "active", None);
+            if active.is_some_and(|(active, _)| active == "false") {
                 self.notes.refused(kind, &name, at, "it is not active");
                 continue;
             }
@@ -416,12 +418,17 @@ impl<'d> Reader<'d, '_> {
             self.notes.refused(kind, name, at, "stiffness and damping must not be negative");
             return None;
         }
-        // A negative length means the length at the reference of the springs.
         let lengths = match list(self, "springlength")[..] {
-            [length] if length >= 0.0 => Some([length; 2]),
-            [low, high] if low >= 0.0 && high >= low => Some([low, high]),
+            [length] => Some([length; 2]),
+            [low, high] => Some([low, high]),
             _ => None,
         };
+        // Only -1 means the length at the reference of the springs: fixed tendons may have negative lengths.
+        let lengths = lengths.filter(|lengths| *lengths != [-1.0; 2]);
+        if lengths.is_some_and(|[low, high]| low > high) {
+            self.notes.refused(kind, name, at, "the second number of `springlength` is below the first");
+            return None;
+        }
         Some(TendonLaw { stiffness, damping, lengths })
     }
 

@@ -6,7 +6,10 @@ use hardpoint::space::{Pose, Vec3};
 use roxmltree::Node;
 
 use super::{Frame, Model, Reader, version};
-use crate::markers::{ElementSource, Marker, MarkerJoint, carrying_joint, coordinate_sign, join};
+use crate::markers::{
+    ElementSource, Marker, MarkerJoint, carrying_joint, coordinate_sign, has_perpendicular_axes, join,
+    join_by_hinges,
+};
 use crate::mechanism::{Coordinate, Mechanism};
 use crate::turn::home;
 use crate::xml::{Vocabulary, child, children, exactly, local, named};
@@ -176,25 +179,38 @@ impl<'d> Reader<'d, '_> {
         } else {
             self.axis(joint, model, frame, "axis")
         };
-        let second = if type_name == "universal" { self.axis(joint, model, frame, "axis2") } else { axis };
-        let ends = [(i.body, axis), (j.body, second)].map(|(body, axis)| Marker::along(body, frame.r, axis));
+        let axis2 = if type_name == "universal" { self.axis(joint, model, frame, "axis2") } else { axis };
+        let ends = [(i.body, axis), (j.body, axis2)].map(|(body, axis)| Marker::along(body, frame.r, axis));
         let [Some(i), Some(j)] = ends else { return };
-        let Some(number) = join(&mut self.m, self.notes, source, type_name, [i, j]) else { return };
-        let limited: &[(&str, &'static str)] = match type_name {
-            "revolute" | "screw" => &[("axis", "angle")],
-            "translational" => &[("axis", "displacement")],
-            "universal" => &[("axis", "angle"), ("axis2", "angle2")],
-            _ => &[],
+        // The two hinges of `revolute2` may have any axes.
+        let is_series = kind == "revolute2" && !has_perpendicular_axes([i, j]);
+        let numbers = if is_series {
+            join_by_hinges(&mut self.m, self.notes, source, [i, j])
+        } else {
+            join(&mut self.m, self.notes, source, type_name, [i, j]).map(|number| [number; 2])
         };
-        for &(key, of) in limited.iter().filter(|_| kind != "continuous") {
+        let Some([number, last]) = numbers else { return };
+        let second = if is_series { "angle" } else { "angle2" };
+        let of_axes = match type_name {
+            "revolute" | "screw" => vec![("axis", Coordinate { joint: number, name: "angle" })],
+            "translational" => vec![("axis", Coordinate { joint: number, name: "displacement" })],
+            "universal" => vec![
+                ("axis", Coordinate { joint: number, name: "angle" }),
+                ("axis2", Coordinate { joint: last, name: second }),
+            ],
+            _ => Vec::new(),
+        };
+        for &(key, of) in of_axes.iter().filter(|_| kind != "continuous") {
             let Some(limit) = child(joint, key).and_then(|a| child(a, "limit")) else { continue };
             let open = [("lower", f64::NEG_INFINITY), ("upper", f64::INFINITY)];
             let [low, high] = open.map(|(key, open)| {
                 let Some(n) = child(limit, key) else { return Some(open) };
                 xml::bound(n.text().unwrap_or_default(), &format!("`{key}`"), xml::at(text, n), self.notes)
             });
-            if let Some(range) = low.zip(high).and_then(|(low, high)| xml::range(low, high)) {
-                self.m.joints[number].limit(of, range);
+            if let Some(range) = low.zip(high).and_then(|(low, high)| xml::range(low, high))
+                && let Err(why) = self.m.joints[of.joint].limit(of.name, range)
+            {
+                self.notes.refused("limit", &shown, xml::at(text, limit), why);
             }
         }
         if type_name == "screw" {
@@ -216,15 +232,26 @@ impl<'d> Reader<'d, '_> {
                 ),
             }
         }
-        let joined = MarkerJoint { number, kind: type_name, markers: [i, j] };
-        self.dynamics(joint, text, &shown, only_coordinate(&joined));
-        self.joints.insert(full, joined);
+        for key in ["axis", "axis2"] {
+            let of_axis = of_axes.iter().find(|(of, _)| *of == key).map(|(_, coordinate)| *coordinate);
+            let is_single = type_name != "universal" || is_series;
+            self.dynamics(joint, key, text, &shown, of_axis.filter(|_| is_single));
+        }
+        if !is_series {
+            self.joints.insert(full, MarkerJoint { number, kind: type_name, markers: [i, j] });
+        }
     }
 
-    /// Adds springs and dampers of a joint.
-    fn dynamics(&mut self, joint: Node<'d, 'd>, text: usize, name: &str, coordinate: Option<Coordinate>) {
-        let axes = ["axis", "axis2"].into_iter().filter_map(|key| child(joint, key));
-        for dynamics in axes.filter_map(|axis| child(axis, "dynamics")) {
+    /// Adds the spring and damper of an axis of a joint.
+    fn dynamics(
+        &mut self,
+        joint: Node<'d, 'd>,
+        axis: &'static str,
+        text: usize,
+        name: &str,
+        coordinate: Option<Coordinate>,
+    ) {
+        if let Some(dynamics) = child(joint, axis).and_then(|axis| child(axis, "dynamics")) {
             let at = xml::at(text, dynamics);
             let [stiffness, damping, free, friction] =
                 ["spring_stiffness", "damping", "spring_reference", "friction"].map(|key| {

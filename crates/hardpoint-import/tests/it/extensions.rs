@@ -187,6 +187,35 @@ fn constants_of_relations_count() {
     }
 }
 
+#[test]
+fn equalities_are_inactive_by_the_default_of_equalities() {
+    let model = |defaults: &str, equality: &str| {
+        format!(
+            r#"<mujoco><default><joint axis="0 1 0" active="false"/>{defaults}</default><worldbody><body name="a"><joint name="j"/>
+            <inertial pos="0.5 0 0" mass="2"/></body><body name="b" pos="0 1 0"><joint name="k"/><inertial pos="0.5 0 0" mass="2"/></body></worldbody>
+            <tendon><fixed name="s"><joint joint="j" coef="1"/></fixed><fixed name="t"><joint joint="k" coef="1"/></fixed></tendon>
+            <equality>{equality}</equality></mujoco>"#
+        )
+    };
+    // The default of joints is another one.
+    let inactive = r#"<equality active="false"/>"#;
+    for relation in
+        [r#"<joint name="e" joint1="k" joint2="j"/>"#, r#"<tendon name="e" tendon1="s" tendon2="t"/>"#]
+    {
+        let own = relation.replace("name", r#"active="true" name"#);
+        for (defaults, equality, is_active) in
+            [(inactive, relation, false), (inactive, &own, true), ("", relation, true)]
+        {
+            let text = model(defaults, equality);
+            let imported = hardpoint_import::import(text.as_bytes(), "m.xml", &|_| None).unwrap();
+            let refused = imported.report.of(ElementOutcome::Refused);
+            let refused = refused.filter(|e| e.name == "e" && e.why == "it is not active").count();
+            assert_eq!(refused, usize::from(!is_active), "{text}\n{}", imported.report);
+            assert_eq!(imported.text.contains("[couplers"), is_active, "{text}\n{}", imported.text);
+        }
+    }
+}
+
 /// Two hinges about y, one of which is a mimic joint.
 const SDF: &str = r#"<sdf version="1.11"><model name="m">
 <link name="a"/><link name="b"><pose>1 0 0 0 0 0</pose></link>PLUGIN
@@ -333,7 +362,19 @@ fn closings_are_parsed() {
     assert_eq!((read.places, read.kind, read.axis), ([[0.0, 1.0, -2.5], [0.0; 3]], "revolute", 0));
     assert_eq!(closing("a=b").unwrap().kind, "spherical");
     assert_eq!(closing("m::a=m::b").unwrap().frames[1], "m::b");
-    for wrong in ["a", "=b", "a=", "a=b:x", "a@1,2=b", "a@1,2,inf=b", ""] {
+    assert_eq!(closing("a=m::fixed::b").unwrap().frames[1], "m::fixed::b");
+    for wrong in [
+        "a",
+        "=b",
+        "a=",
+        "a=b:x",
+        "a=b:hinge:x",
+        "a=b:revolute:q",
+        "a=b:fixed:",
+        "a@1,2=b",
+        "a@1,2,inf=b",
+        "",
+    ] {
         assert!(closing(wrong).unwrap_err().contains("A=B"), "{wrong}");
     }
     let options = Options { closings: vec!["tip=nowhere".parse().unwrap()], ..Options::default() };
@@ -520,6 +561,7 @@ fn tendons_of_constant_further_parts_or_with_slack_are_springs() {
         ("", "", spatial(r#"stiffness="40" springlength="3""#, long), -0.5 * 10.0, true),
         // Longer than its constant parts alone: without a positive free length
         ("", "", spatial(r#"stiffness="40" springlength="2""#, long), -0.5 * 50.0, true),
+        ("", "", spatial(r#"stiffness="40" springlength="-0.25""#, path), -0.5 * 50.0, true),
         // Slack between 0.5 and 0.9 m, and between 1.2 and 1.5 m
         ("", "", spatial(r#"stiffness="40" springlength="0.5 0.9""#, path), -0.5 * 4.0, false),
         ("", "", spatial(r#"stiffness="40" springlength="1.2 1.5""#, path), 0.5 * 8.0, false),
@@ -528,6 +570,17 @@ fn tendons_of_constant_further_parts_or_with_slack_are_springs() {
         ("", "", fixed(r#"stiffness="40" springlength="0.3""#), 10.0 * 0.6, true),
         ("", r#"ref="0.2" springref="0.5""#, fixed(r#"stiffness="40" springlength="0.3""#), 10.0 * 0.4, true),
         ("", r#"ref="0.2" springref="0.5""#, fixed(r#"stiffness="40""#), 10.0 * 0.3, true),
+        // Lengths of fixed tendons may be negative; only -1 is that at the reference.
+        ("", "", fixed(r#"stiffness="40" springlength="-0.2""#), -10.0 * 0.4, true),
+        ("", "", fixed(r#"stiffness="40" springlength="-1.5 -1.5""#), -10.0 * 3.0, true),
+        ("", r#"ref="0.2" springref="0.5""#, fixed(r#"stiffness="40" springlength="-1""#), 10.0 * 0.3, true),
+        (
+            "",
+            r#"ref="0.2" springref="0.5""#,
+            fixed(r#"stiffness="40" springlength="-1 -1""#),
+            10.0 * 0.3,
+            true,
+        ),
     ] {
         let text =
             model(defaults, joint, &tendon).replace("<mujoco>", r#"<mujoco><compiler angle="radian"/>"#);
@@ -552,6 +605,8 @@ fn tendons_of_constant_further_parts_or_with_slack_are_springs() {
         (spatial(r#"stiffness="-40""#, path), "negative"),
         (spatial(r#"stiffness="40 3""#, path), "depends on the length"),
         (fixed(r#"stiffness="40" springlength="0.1 0.2""#), "between two lengths"),
+        (fixed(r#"stiffness="40" springlength="-0.3 0.1""#), "between two lengths"),
+        (spatial(r#"stiffness="40" springlength="0.5 0.2""#, path), "below the first"),
         (
             r#"<fixed name="s" stiffness="4"><joint joint="j" coef="1"/><joint joint="j" coef="2"/></fixed>"#
                 .to_owned(),

@@ -1,12 +1,12 @@
 //! Output of real exporters of URDF, SDFormat and MJCF, beyond the examples of their documents.
 
 use hardpoint::model::{BodyId, Joint};
-use hardpoint::space::Vec3;
+use hardpoint::space::{Mat3, Vec3};
 use hardpoint::{Analysis, Run};
 use hardpoint_file::ModelFile;
 use hardpoint_import::{ElementOutcome, ImportedModel};
 
-use crate::model;
+use crate::{folder, model};
 
 /// Tolerance of sums of sixteen digits.
 const SAME: f64 = 1e-12;
@@ -557,4 +557,128 @@ fn limits_of_joints_are_relative_to_the_design_configuration_in_every_format() {
         ("C.articulation", None, Some(45_f64.to_radians())),
     ];
     assert_limits(&limits(&file), &expected);
+}
+
+#[test]
+fn a_range_whose_lower_end_is_not_below_its_upper_one_is_reported() {
+    let link = |name: &str| format!(r#"<link name="{name}"/>"#);
+    let joint = |k: usize, limit: &str| {
+        format!(
+            r#"<joint name="j{k}" type="revolute"><parent link="l{k}"/><child link="l{}"/><axis xyz="0 1 0"/>
+            <limit {limit} effort="1" velocity="1"/></joint>"#,
+            k + 1
+        )
+    };
+    // A missing end is 0 in URDF, and a limit with neither has none.
+    let of_urdf =
+        [r#"lower="1" upper="-1""#, r#"lower="0.3" upper="0.3""#, r#"lower="0.1""#, r#"upper="-0.1""#, ""];
+    let links: String = (0..6).map(|k| link(&format!("l{k}"))).collect();
+    let joints: String = of_urdf.iter().enumerate().map(|(k, limit)| joint(k, limit)).collect();
+    let urdf = format!(r#"<robot name="r">{links}{joints}</robot>"#);
+    let sdf = r#"<sdf version="1.9"><model name="m"><link name="a"/><link name="b"/><link name="c"/>
+        <joint name="w" type="fixed"><parent>world</parent><child>a</child></joint>
+        <joint name="j" type="revolute"><parent>a</parent><child>b</child><axis><xyz>0 0 1</xyz>
+          <limit><lower>1</lower><upper>-1</upper></limit></axis></joint>
+        <joint name="u" type="universal"><parent>b</parent><child>c</child><axis><xyz>1 0 0</xyz></axis>
+          <axis2><xyz>0 1 0</xyz><limit><lower>0.2</lower><upper>0.2</upper></limit></axis2></joint></model></sdf>"#;
+    let body = |name: &str, joint: &str, inner: &str| {
+        format!(
+            r#"<body name="{name}"><joint name="{name}" {joint}/><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>{inner}</body>"#
+        )
+    };
+    let inner = body("d", r#"type="ball" range="0 0""#, "");
+    let inner = body("c", r#"type="ball" limited="true" range="0 0""#, &inner);
+    let inner = body("b", r#"range="0 0""#, &inner);
+    let mjcf = format!("<mujoco><worldbody>{}</worldbody></mujoco>", body("a", r#"range="2 -1""#, &inner));
+    let cases: [(&str, &str, &str, &[&str]); 3] = [
+        ("r.urdf", &urdf, "limit", &["j0", "j1", "j2", "j3"]),
+        ("m.sdf", sdf, "limit", &["j", "u"]),
+        ("m.xml", &mjcf, "range", &["a", "c"]),
+    ];
+    for (name, text, kind, expected) in cases {
+        let (imported, file) = read(name, text);
+        let reported = reported(&imported, ElementOutcome::Refused, kind);
+        let expected: Vec<String> = expected
+            .iter()
+            .map(|joint| {
+                format!("{joint}: its lower end is not below its upper end: the joint gets no limit")
+            })
+            .collect();
+        assert_eq!(reported, expected, "{name}: {}", imported.report);
+        assert_eq!(limits(&file), [], "{name}");
+    }
+
+    let document = std::fs::read_to_string(folder().join("freecad/vise/Document.xml")).unwrap();
+    let imported = |document: &str| {
+        hardpoint_import::import(&crate::document(document.as_bytes()), "vise.FCStd", &|_| None).unwrap()
+    };
+    let of_limits = |imported: &ImportedModel, fate| reported(imported, fate, "limits").len();
+    let own = imported(&document);
+    assert_eq!([ElementOutcome::Taken, ElementOutcome::Refused].map(|fate| of_limits(&own, fate)), [1, 0]);
+    let least = r#"<Property name="EnableLengthMin" type="x"><Bool value="true"/></Property>
+        <Property name="LengthMin" type="x"><Float value="1000"/></Property>"#;
+    let property = r#"<Property name="EnableLengthMax""#;
+    let reversed = imported(&document.replace(property, &format!("{least}{property}")));
+    assert_eq!(
+        [ElementOutcome::Taken, ElementOutcome::Refused].map(|fate| of_limits(&reversed, fate)),
+        [0, 1],
+        "{}",
+        reversed.report
+    );
+}
+
+#[test]
+fn axes_of_revolute2_are_those_of_two_hinges_in_series() {
+    let text = |kind: &str, second: &str| {
+        format!(
+            r#"<sdf version="1.9"><model name="m"><link name="a"/><link name="b"><pose>1 0 0 0 0 0</pose></link>
+            <joint name="w" type="fixed"><parent>world</parent><child>a</child></joint>
+            <joint name="j" type="{kind}"><parent>a</parent><child>b</child>
+            <axis><xyz>0 0 1</xyz><limit><lower>-0.5</lower><upper>0.6</upper></limit></axis>
+            <axis2><xyz>{second}</xyz><limit><upper>0.7</upper></limit>
+            <dynamics><damping>2</damping></dynamics></axis2></joint></model></sdf>"#
+        )
+    };
+    let (imported, _) = read("m.sdf", &text("revolute2", "0 1 0"));
+    assert!(imported.text.contains("universal"), "{}", imported.text);
+    for second in ["0 1 0.3", "0 0 1"] {
+        let (imported, file) = read("m.sdf", &text("revolute2", second));
+        let hinges = kinds(&file).into_iter().filter(|(name, _)| name.starts_with("j_"));
+        assert_eq!(
+            hinges.collect::<Vec<_>>(),
+            [("j_i", "revolute"), ("j_j", "revolute")],
+            "{}",
+            imported.text
+        );
+        for fate in [ElementOutcome::Approximated, ElementOutcome::Refused] {
+            assert_eq!(reported(&imported, fate, "joint").len(), 0, "{}", imported.report);
+        }
+        let expected = [("j_i.angle", Some(-0.5), Some(0.6)), ("j_j.angle", None, Some(0.7))];
+        assert_limits(&limits(&file), &expected);
+        assert_eq!(reported(&imported, ElementOutcome::Taken, "spring"), ["j: "], "{}", imported.report);
+        // A = A(axis, q1) A(axis2, q2); at q1 = q2 = 0 the link has its pose in the file.
+        let axis: Vec<f64> = second.split(' ').map(|x| x.parse().unwrap()).collect();
+        let axis2 = Vec3::from([axis[0], axis[1], axis[2]]).unit().unwrap();
+        for turns in [[0.0, 0.0], [0.3, 0.2]] {
+            let expected = Mat3::about([0.0, 0.0, 1.0].into(), turns[0]) * Mat3::about(axis2, turns[1]);
+            let text = driven(&imported.text, turns);
+            let file = hardpoint_file::parse(&text, "m.toml").unwrap_or_else(|e| panic!("{e}\n{text}"));
+            let solution = Analysis::new(&file.model).unwrap().solve(Run::new().without_sensitivities());
+            let body = BodyId(file.model.bodies.iter().position(|b| b.name == "b").unwrap());
+            let state = solution.body(0, body);
+            assert!(state.rotation.angle_to(expected) < SAME, "{second}, {turns:?}: {state:?}");
+            assert!((state.r - Vec3::from([1.0, 0.0, 0.0])).norm() < SAME, "{second}, {turns:?}: {state:?}");
+        }
+    }
+}
+
+/// Text of an imported model whose two drivers have constant laws.
+fn driven(text: &str, laws: [f64; 2]) -> String {
+    let mut document: toml_edit::DocumentMut = text.parse().unwrap();
+    let drivers = document["drivers"].as_table_like_mut().unwrap();
+    for (joint, law) in ["j_i", "j_j"].into_iter().zip(laws) {
+        let mut of_joint = drivers.iter_mut().filter(|(_, driver)| driver["joint"].as_str() == Some(joint));
+        of_joint.next().unwrap().1["law"] = toml_edit::value(law);
+    }
+    document.to_string()
 }
