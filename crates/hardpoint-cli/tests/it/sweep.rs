@@ -82,7 +82,7 @@ fn the_sweep_of_the_strut_is_printed_and_written() {
 fn a_killed_and_resumed_sweep_equals_an_uninterrupted_one() {
     let bench = bench();
     for format in ["csv", "parquet"] {
-        let common = ["--samples", "10000", "--curves", "toe", "--format", format];
+        let common = ["--samples", "4000", "--curves", "toe", "--format", format];
         let whole = format!("whole_{format}");
         done(&bench, &[&common[..], &["-o", &whole, "--threads", "2"]].concat());
         let broken = format!("broken_{format}");
@@ -272,7 +272,7 @@ fn invalid_sweeps_are_rejected_with_help() {
 #[cfg(unix)]
 fn an_interrupted_sweep_keeps_its_designs_and_resumes() {
     let bench = bench();
-    let common = ["--samples", "30000", "--threads", "1"];
+    let common = ["--samples", "10000", "--threads", "1"];
     let mut command = bench.command(&[&["sweep", STRUT], &common[..], &["-o", "out"]].concat());
     let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let journal = bench.path("out/sweep.partial");
@@ -291,8 +291,8 @@ fn an_interrupted_sweep_keeps_its_designs_and_resumes() {
     assert_eq!(summary["status"], "interrupted");
     let rows = bench.text("out/designs.csv").lines().count() - 1;
     assert_eq!(summary["designs"], rows);
-    assert!(rows > 0 && rows < 30_000 && rows.is_multiple_of(BLOCK), "{rows}");
+    assert!(rows > 0 && rows < 10_000 && rows.is_multiple_of(BLOCK), "{rows}");
     done(&bench, &[&common[..], &["-o", "out"]].concat());
-    assert_eq!(bench.text("out/designs.csv").lines().count(), 30_001);
+    assert_eq!(bench.text("out/designs.csv").lines().count(), 10_001);
     assert!(!journal.exists());
 }
