@@ -93,6 +93,7 @@ pub fn linkages_of(
     })?;
     let mut facts = SynthesisFacts::of(file, &task, &found);
     let (mut answers, mut models) = (Vec::<Answer>::new(), Vec::<(String, ModelFile)>::new());
+    let mut not_reproduced = 0;
     for answer in &found.answers {
         let rank = models.len() + 1;
         let content = model_text(file, answer, rank);
@@ -107,9 +108,10 @@ pub fn linkages_of(
                 models.push((content, model));
                 answers.push(answer.clone());
             }
-            None => facts.not_reproduced += 1,
+            None => not_reproduced += 1,
         }
     }
+    facts.leave_out(not_reproduced);
     Ok(SynthesizedLinkages { facts, answers, models })
 }
 

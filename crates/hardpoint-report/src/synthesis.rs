@@ -28,6 +28,8 @@ const STEPS: usize = 80;
 const BOUNDS: f64 = 0.05;
 /// Status of a synthesis that the caller ended.
 const INTERRUPTED: &str = "interrupted";
+/// Status of a synthesis without an answer.
+const NONE: &str = "none";
 /// Name of the guided body in models.
 const COUPLER: &str = "coupler";
 
@@ -422,7 +424,7 @@ record! {
     /// `found`, `none` if no linkage fulfils the task, or `interrupted`, with the answers so far.
     status: &'static str = match (found.is_interrupted, found.answers.is_empty()) {
         (true, _) => INTERRUPTED,
-        (false, true) => "none",
+        (false, true) => NONE,
         (false, false) => "found",
     };
     /// Kind of aim: `poses` or `path`.
@@ -639,10 +641,26 @@ impl SynthesisFacts {
         self.status = INTERRUPTED;
     }
 
+    /// Counts the answers that the engine did not reproduce, once the others are added. Without others the task has
+    /// none.
+    pub fn leave_out(&mut self, count: usize) {
+        self.not_reproduced = count;
+        if self.answers.is_empty() && !self.is_interrupted() {
+            self.status = NONE;
+        }
+    }
+
     /// The reason why there is no answer, with an instruction.
     pub fn advice(&self) -> Option<(String, String)> {
         if !self.answers.is_empty() || self.is_interrupted() {
             return None;
+        }
+        if self.not_reproduced > 0 {
+            let verb = if self.not_reproduced == 1 { "passes" } else { "pass" };
+            let linkages = count(self.not_reproduced, "linkage");
+            let what = format!("{linkages} {verb} all {} without a defect", self.plural());
+            let help = format!("change a {} a little, or use lengths of the size of a mechanism", self.one());
+            return Some((format!("{what}, but the engine does not reproduce the motion"), help));
         }
         if self.aim == "poses" && self.cranks.unwrap_or(0) + self.sliders.unwrap_or(0) < 2 {
             let why = match self.count {

@@ -12,7 +12,7 @@ use hardpoint::run::{Analysis, Run};
 use hardpoint::topology::Formulation;
 use hardpoint_file::parse;
 use hardpoint_study::calibrate::{
-    Calibration, Error, Loss, Prior, Request, Status, calibrate, values_in_postures,
+    Calibration, Certainty, Error, Loss, Prior, Request, Status, calibrate, values_in_postures,
 };
 use hardpoint_study::{Control, design_stream, draw};
 
@@ -347,6 +347,59 @@ fn without_standard_deviations_they_come_from_the_residuals() {
     let Err(Error::Request(error)) = few else { panic!("{few:?}") };
     let message = "3 readings without standard deviations do not determine 3 variables and their accuracy";
     assert_eq!(error.message, message);
+}
+
+/// Three readings of `a + b`, `a - b` and `b`, of which a is at its bound of 1 mm: as with a fixed there, b is the mean
+/// of 2.1, 1.2 and 1.9 mm, and the two degrees of freedom leave `sqrt(F / 2 / 3)` as its standard deviation.
+#[test]
+fn a_parameter_at_its_bound_takes_no_reading() {
+    let text = |value: &str| {
+        format!(
+            r#"
+name = "bound"
+units = {{ length = "mm", angle = "deg" }}
+parameters.a = {{ value = {value}, unit = "length", bounds = [-1, 1], design = true }}
+parameters.b = {{ value = 0, unit = "length", design = true }}
+hardpoints = {{ h1 = ["a + b", 0, 10], h2 = ["a - b", 0, 20], h3 = ["b", 0, 30] }}
+bodies.s = {{}}
+joints.g = {{ type = "translational", bodies = ["ground", "s"], at = [0, 0, 0], axis = "x" }}
+drivers.d = {{ joint = "g", law = "t" }}
+measures.y1 = {{ type = "position", point = {{ body = "s", at = "h1" }}, along = "x" }}
+measures.y2 = {{ type = "position", point = {{ body = "s", at = "h2" }}, along = "x" }}
+measures.y3 = {{ type = "position", point = {{ body = "s", at = "h3" }}, along = "x" }}
+time = {{ end = 1, steps = 1 }}
+"#
+        )
+    };
+    let values = [3.1e-3, -0.2e-3, 1.9e-3];
+    let readings = values.iter().enumerate();
+    let readings = readings.map(|(output, value)| Reading { posture: 0, output, value: *value, sigma: None });
+    let measured =
+        Measurements { postures: vec![vec![0.0]], readings: readings.collect(), ..Measurements::default() };
+    let scatter = (0.446_666_666_666_666_7_f64 / 2.0).sqrt() * 1e-3;
+    // From the bound as well as from within.
+    for value in ["0", "1"] {
+        let model = parse(&text(value), "bound.toml").unwrap_or_else(|e| panic!("{e}")).model;
+        let request = Request {
+            measured: &measured,
+            validation: None,
+            variables: all(&model),
+            prior: Prior::default(),
+            keep_bounds: true,
+            loss: Loss::Squares,
+            formulation: Formulation::Relative,
+            iterations: 50,
+        };
+        let found = calibrated(&model, &request).unwrap_or_else(|e| panic!("{e:?}"));
+        let near = |x: f64, expected: f64| assert!((x - expected).abs() < 1e-9 * expected, "{x} {expected}");
+        near(found.estimates[1], 5.2e-3 / 3.0);
+        let Certainty { sigmas, freedom, scatter: residual, .. } = &found.certainty;
+        assert_eq!((*freedom, sigmas[0]), (2, None));
+        near(residual.unwrap(), scatter);
+        near(sigmas[1].unwrap(), scatter / 3.0_f64.sqrt());
+        // Residuals are in estimated standard deviations, and so is the objective: F / sigma^2.
+        near(found.objective[1], 2.0);
+    }
 }
 
 #[test]

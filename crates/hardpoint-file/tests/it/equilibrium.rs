@@ -1154,6 +1154,47 @@ fn faults_are_reported() {
     snapshot("equilibrium_faults", &found.join("\n\n"));
 }
 
+/// A lever on a torsion spring: its mean height at equilibrium is that of straight lines between the output times. A
+/// metric over a measure is solved at a time of its own, which moves with the design and changes the mean by nothing.
+#[test]
+fn another_metric_does_not_change_a_mean_at_equilibrium() {
+    let model = |more: &str| {
+        file(&format!(
+            r#"
+name = "lever"
+units = {{ length = "mm", angle = "deg" }}
+parameters = {{ k = {{ value = 1, design = true }} }}
+hardpoints = {{ O = [0, 0, 0], P = [0, -100, 0] }}
+bodies.lever = {{}}
+joints.pin = {{ type = "revolute", bodies = ["ground", "lever"], at = "O", axis = "z" }}
+drivers.d = {{ joint = "pin", law = "0" }}
+forces.spring = {{ type = "torsion_spring", joint = "pin", stiffness = "k" }}
+forces.m = {{ type = "moment", body = "lever", moment = 1, about = "z", law = "0" }}
+measures.x = {{ type = "position", point = {{ body = "lever", at = "P" }}, along = "x" }}
+measures.y = {{ type = "position", point = {{ body = "lever", at = "P" }}, along = "y" }}
+metrics.mean = {{ of = "y", take = "mean" }}
+{more}
+equilibrium.released = ["d"]
+cases.load.laws.m = "-20 + 80*t"
+time = {{ end = 1, steps = 8 }}
+"#
+        ))
+        .model
+    };
+    let mean = |more: &str, design: &[f64]| {
+        let motion = model(more).motions().remove(0);
+        let solution = Analysis::new(&motion).unwrap().solve(Run::new().at(design));
+        let found = metrics(&motion, &solution).remove(0);
+        (found.value.unwrap(), found.d[0])
+    };
+    let more = "metrics.v = { of = \"y\", take = \"value\", over = \"x\", at = 50 }";
+    let (alone, beside) = (mean("", &[]), mean(more, &[]));
+    assert_eq!(alone, beside);
+    let h = 1e-4;
+    let difference = (mean(more, &[h]).0 - mean(more, &[-h]).0) / (2.0 * h);
+    near(beside.1, difference, 1e-7 * difference.abs(), "d mean / dk");
+}
+
 /// The template of a K&C rig with further metrics.
 fn rig(metrics: &str) -> Model {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../hardpoint-cli/templates/k-and-c.toml");

@@ -601,3 +601,46 @@ fn variables_without_effect_make_no_optima() {
         assert!(search.found.as_ref().unwrap().design[3].abs() < 1e-15);
     }
 }
+
+/// A goal that does not change to first order with two of three variables: searches from the start move the third
+/// alone, to 1 at x = z = 0. Its minimum is 7/8 at x = -z = 1/2 or -1/2, in a direction along which neither of the two
+/// alone is better: f = 1 + x^4 + z^4 + 3 x z + x^2 + z^2 + (y - 0.1)^2.
+#[test]
+fn a_design_that_is_symmetric_in_its_variables_is_left_where_it_is_a_saddle() {
+    let text = |x: &str| {
+        format!(
+            r#"
+name = "saddle"
+units = {{ length = "m", angle = "rad" }}
+time = {{ at = [0] }}
+hardpoints = {{ O = [0, 0, 0], P = [{x}, 0.3, 0] }}
+bodies.arm = {{}}
+joints.O = {{ type = "revolute", bodies = ["ground", "arm"], at = "O", axis = "z" }}
+drivers.O = {{ joint = "O", law = "0" }}
+points.p = {{ body = "ground", at = "P" }}
+design = {{ p = {{ move = "P", along = "xyz", bounds = [-1, 1] }} }}
+optimize = {{ goals = {{ f = {{}} }} }}
+[measures]
+x = {{ type = "position", point = "p", along = "x" }}
+y = {{ type = "position", point = "p", along = "y" }}
+z = {{ type = "position", point = "p", along = "z" }}
+sum = {{ type = "expression", expression = "1 + x^4 + z^4 + 3*x*z + x^2 + z^2 + (y - 0.1)^2" }}
+[metrics]
+f = {{ of = "sum", take = "max" }}
+"#
+        )
+    };
+    // At the saddle, and beside it.
+    for x in ["0", "1e-3"] {
+        let file = hardpoint_file::parse(&text(x), "saddle.toml").unwrap_or_else(|e| panic!("{e}"));
+        let found = searched(&file, &asked(&file));
+        let best = best(&found);
+        assert_eq!(best.status, Status::Optimal);
+        let [x0, y, z] = best.found.as_ref().unwrap().design[..] else { panic!() };
+        let x = x0 + x.parse::<f64>().unwrap();
+        assert!(
+            (x.abs() - 0.5).abs() < 1e-5 && (x + z).abs() < 1e-5 && (y + 0.2).abs() < 1e-5,
+            "{x} {y} {z}"
+        );
+    }
+}

@@ -807,6 +807,41 @@ law = "cos(pi*t/0.8)"
     assert!(found.curves[0].bands.iter().all(|band| band.loaded.is_none()) && found.side_changes.is_empty());
 }
 
+/// Forces that hold the ram of a slider-crank in balance leave its pins without a force but for round-off: they lie on
+/// no side.
+#[test]
+fn round_off_pushes_a_pin_to_no_side() {
+    let text = LOOSE_CRANK.to_owned()
+        + r#"
+forces.push = { type = "force", at = "B", force = -100, along = "x" }
+forces.pull = { type = "force", at = "B", force = 33.3, along = "x" }
+forces.rest = { type = "force", at = "B", force = 66.7, along = "x" }
+"#;
+    let found = examined(&model(&text), |asked| asked.samples = 0);
+    assert!(found.side_changes.is_empty(), "{:?}", found.side_changes);
+    assert!(found.curves[0].bands.iter().all(|band| band.loaded.is_none()));
+}
+
+/// A constant force on the ram never leaves the rod, which only turns: with three intervals in a turn of the crank, by
+/// more than a right angle between output times as seen from the crank.
+#[test]
+fn a_force_that_turns_between_output_times_changes_no_sides() {
+    let text = LOOSE_CRANK.replace("300*t", "10 + 360*t").replace("steps = 30", "steps = 3")
+        + "forces.push = { type = \"force\", at = \"B\", force = -1000, along = \"x\" }\n";
+    let found = examined(&model(&text), |asked| asked.samples = 0);
+    assert!(found.side_changes.is_empty(), "{:?}", found.side_changes);
+    // The same with a force that vanishes between output times.
+    let reversed = text.replace("force = -1000,", "force = -1000, law = \"1 - t/0.9\",");
+    let found = examined(&model(&reversed), |asked| asked.samples = 0);
+    // The crank, which turns by a third of a turn in between, does not see it at its main pin.
+    let joints: Vec<usize> = found.side_changes.iter().map(|change| change.joint.0).collect();
+    assert_eq!(joints, [1, 2], "{:?}", found.side_changes);
+    for change in &found.side_changes {
+        let [time] = change.times[..] else { panic!("{change:?}") };
+        assert!((time - 0.9).abs() < 1e-4, "{change:?}");
+    }
+}
+
 /// The rocker of a four-bar whose pin C is anywhere within 0.1 mm of its place: its angle is between those of circles
 /// about B and D whose radii differ by the play. To first order the maximum is short of the samples.
 #[test]

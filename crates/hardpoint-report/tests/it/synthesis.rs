@@ -141,6 +141,22 @@ fn poses_without_an_answer_have_an_advice() {
     assert_eq!(facts.status, "none");
 }
 
+#[test]
+fn a_task_whose_answers_the_engine_does_not_reproduce_has_none() {
+    let (file, task, found) = read("gripper");
+    let mut facts = SynthesisFacts::of(&file, &task, &found);
+    facts.leave_out(4);
+    assert_eq!(facts.status, "none");
+    let (why, help) = facts.advice().unwrap();
+    let expected = "4 linkages pass all poses without a defect, but the engine does not reproduce the motion";
+    assert!(why == expected && help.contains("lengths"), "{why}; {help}");
+    // With another answer there is one.
+    let mut facts = SynthesisFacts::of(&file, &task, &found);
+    facts.answers = follow(&file, &found);
+    facts.leave_out(1);
+    assert!(facts.status == "found" && facts.advice().is_none());
+}
+
 /// Change of a coordinate of a synthesised model, m: far below its bounds of a tenth of the size of the task.
 const SHIFT: f64 = 1e-5;
 

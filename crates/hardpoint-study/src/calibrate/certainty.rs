@@ -1,7 +1,7 @@
 //! Accuracy of the fitted variables: covariance, and changes that cannot be identified.
 
 use super::BoundSide;
-use super::fit::{FitWorkspace, SearchResult, information};
+use super::fit::{FitWorkspace, SearchResult, free, information};
 use hardpoint_search::{dot, independent};
 
 /// A direction with a standard deviation of more natural steps than this (about the mechanism's size) is not reported.
@@ -76,8 +76,7 @@ impl Directions {
 impl FitWorkspace<'_> {
     /// Splits the directions at the end of a search by their accuracy.
     pub(super) fn directions(&self, search: &SearchResult) -> Directions {
-        let free: Vec<usize> = (0..self.parameters.len()).filter(|k| search.active[*k].is_none()).collect();
-        let found = self.determined(&search.at, &search.weights, search.scale, &free);
+        let found = self.determined(&search.at, &search.weights, search.scale, &free(&search.active));
         let mut directions = Directions::default();
         let mut by_prior = Vec::new();
         for (v, s) in found.directions {

@@ -372,13 +372,14 @@ impl<'b> FitWorkspace<'b> {
         rows
     }
 
-    /// Standard deviation of the residuals, estimated if none are given.
-    fn scale_of(&self, r: &[f64], determined: f64) -> f64 {
+    /// Standard deviation of the residuals, estimated if none are given, with the number of parameters that the
+    /// readings determine.
+    fn scale_of(&self, r: &[f64], determined: impl FnOnce() -> f64) -> f64 {
         if self.has_sigmas {
             return 1.0;
         }
         let found = if self.request.loss == Loss::Squares {
-            let free = (r.len() as f64 - determined).max(1.0);
+            let free = (r.len() as f64 - determined()).max(1.0);
             (r.iter().map(|r| r * r).sum::<f64>() / free).sqrt()
         } else {
             let mut sizes: Vec<f64> = r.iter().map(|r| r.abs()).collect();
@@ -436,8 +437,9 @@ impl<'b> FitWorkspace<'b> {
     }
 
     /// Number of parameters that the readings determine, as the trace of their part of the information:
-    /// `sum |J v|^2 / s^2`; the number of directions without priors.
-    fn effective(&self, at: &Rows, weights: &[f64], directions: &[(Vec<f64>, f64)]) -> f64 {
+    /// `sum |J v|^2 / s^2`; the number of directions without priors. A parameter at its bound is fixed.
+    fn effective(&self, x: &[f64], at: &Rows, weights: &[f64], scale: f64) -> f64 {
+        let directions = self.determined(at, weights, scale, &free(&self.active_bounds(x))).directions;
         if self.priors.is_empty() {
             return directions.len() as f64;
         }
@@ -497,8 +499,9 @@ impl<'b> FitWorkspace<'b> {
         let n = self.parameters.len();
         let mut x = vec![0.0; n];
         let mut at = self.rows(&self.nominal, &x);
-        let mut scale = self.scale_of(&at.r, n as f64);
+        let mut scale = self.scale_of(&at.r, || n as f64);
         let mut weights = self.weights(&at.r, scale);
+        scale = self.scale_of(&at.r, || self.effective(&x, &at, &weights, scale));
         let mut status = Status::IterationLimit;
         let mut iterations = Vec::new();
         // Weights of a robust loss follow each step, and bounds limit it.
@@ -511,7 +514,7 @@ impl<'b> FitWorkspace<'b> {
             let mut undamped = self.undamped_step(&at, &weights, scale);
             if undamped.decrease <= near {
                 if self.last_steps((&mut x, &mut at, &mut undamped), &weights, scale, more) {
-                    scale = self.scale_of(&at.r, self.effective(&at, &weights, &undamped.directions));
+                    scale = self.scale_of(&at.r, || self.effective(&x, &at, &weights, scale));
                     status = Status::Found;
                     break;
                 }
@@ -538,7 +541,7 @@ impl<'b> FitWorkspace<'b> {
             let after = Self::squares(&rows, &weights, scale);
             (x, at) = (next, rows);
             let scaled_before = scale;
-            scale = self.scale_of(&at.r, self.effective(&at, &weights, &undamped.directions));
+            scale = self.scale_of(&at.r, || self.effective(&x, &at, &weights, scale));
             let old = std::mem::replace(&mut weights, self.weights(&at.r, scale));
             let settled = weights.iter().zip(&old).all(|(a, b)| (a - b).abs() <= SETTLED.sqrt());
             iterations.push(Self::squares(&at, &weights, scale) / (scale * scale));
@@ -777,6 +780,11 @@ impl<'b> FitWorkspace<'b> {
 /// Part of the readings in the information about a direction: `sum w (J v)^2`.
 pub(super) fn information(at: &Rows, weights: &[f64], v: &[f64]) -> f64 {
     at.d.iter().zip(weights).map(|(row, w)| w * dot(row, v).powi(2)).sum()
+}
+
+/// Indices of the parameters that no bound fixes.
+pub(super) fn free(active: &[Option<BoundSide>]) -> Vec<usize> {
+    (0..active.len()).filter(|k| active[*k].is_none()).collect()
 }
 
 /// Fitted variables of a request, then its offsets.

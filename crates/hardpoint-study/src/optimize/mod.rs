@@ -21,6 +21,7 @@ mod optima;
 mod optimality;
 mod problem;
 mod request;
+mod saddle;
 mod solver;
 mod variants;
 
@@ -474,7 +475,8 @@ struct Descent<'p> {
     /// Scales of the limits, from the start.
     scales: Vec<f64>,
     steepest: f64,
-    /// Current point, as fractions of the bounds.
+    /// Start and current point, as fractions of the bounds.
+    start: Vec<f64>,
     at: Vec<f64>,
     here: Point,
     best: Point,
@@ -496,6 +498,7 @@ impl<'p> Descent<'p> {
         Self {
             scales: limit_scales(problem, &point),
             steepest: by_parts.fold(0.0, f64::max),
+            start: start.to_vec(),
             at: start.to_vec(),
             ran_out: false,
             is_curved: false,
@@ -609,6 +612,16 @@ impl<'p> Descent<'p> {
         if self.has_no_effect && self.violation(&self.here) <= KEPT {
             return;
         }
+        loop {
+            self.go_to_rest(search, tell);
+            if !self.leave_saddle(search, tell) {
+                return;
+            }
+        }
+    }
+
+    /// Runs the solvers until they find nothing better.
+    fn go_to_rest(&mut self, search: &mut SearchResult, tell: &mut dyn FnMut(&Iteration)) {
         let squares = self.here.is_squares();
         let mut idle = 0;
         for run in 0..=AGAIN {

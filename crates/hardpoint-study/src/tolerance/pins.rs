@@ -3,15 +3,24 @@
 //! A pin lies on the side to which the force pushes it: with F the force on body j and c the play, the marker of
 //! body j is off by `c F / abs(F)`, the part of F perpendicular to the axis for a pin.
 
+use std::ops::ControlFlow;
+
+use hardpoint::joint::Quantity;
 use hardpoint::load::Loads;
-use hardpoint::model::{Change, JointId, Model, VariableId};
+use hardpoint::model::{Change, Dimension, JointId, Model, VariableId};
 use hardpoint::space::Vec3;
 
 use super::Study;
 use super::deviations::Deviations;
 
-/// Forces below this fraction of the largest one of a joint push a pin to no side: round-off of reactions.
+/// Forces below this fraction of the largest one of the model push a pin to no side: round-off of reactions.
 const NO_FORCE: f64 = 1e-9;
+/// A force that turns by more than a right angle between two output times has vanished between them if it falls below
+/// this fraction of its larger value there: a turn that fast is a jump of the pin.
+const VANISHES: f64 = 1e-3;
+/// Maximum number of times that the force is solved for between two output times. Each second one halves the interval:
+/// a force that jumps to the other side is located to a thousandth of it.
+const MOST_TRIALS: usize = 20;
 
 /// Pin that changes its side in the hole.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,15 +29,15 @@ pub struct SideChange {
     pub joint: JointId,
     /// Index of the motion among those studied.
     pub motion: usize,
-    /// Times, s, at which the force reverses: interpolated between output times.
+    /// Times, s, at which the force reverses.
     pub times: Vec<f64>,
 }
 
 /// Directions of the pins of a motion.
 pub(super) struct Pins {
-    /// Per block of the deviations and output time: unit vector along the block's variables; `None` where there is no
-    /// play, or no force is known.
-    directions: Vec<Vec<Option<Vec<f64>>>>,
+    /// Per block of the deviations, if it is the play of a joint, and output time: unit vector along the block's
+    /// variables; `None` where no force is known.
+    directions: Vec<Option<Vec<Option<Vec<f64>>>>>,
     pub changes: Vec<SideChange>,
 }
 
@@ -43,6 +52,7 @@ impl Pins {
         }
         let loads = analysis.loads(&[]);
         let joints = model.joints.len();
+        let no_force = NO_FORCE * largest_force(model, &loads);
         let mut pins = Self { directions: Vec::new(), changes: Vec::new() };
         for block in &deviations.blocks {
             let tolerance = &settings.tolerances[block.tolerance];
@@ -51,24 +61,29 @@ impl Pins {
                 .filter_map(|v| offset(model, v.variable))
                 .collect();
             let Some(joint) = tolerance.play.filter(|_| along.len() == block.len) else {
-                pins.directions.push(vec![None; loads.times.len()]);
+                pins.directions.push(None);
                 continue;
             };
-            let forces: Vec<Option<Vec<f64>>> =
-                (0..loads.times.len()).map(|k| force(&loads, k * joints + joint.0, &along)).collect();
-            let size = |f: &[f64]| f.iter().map(|x| x * x).sum::<f64>().sqrt();
-            let largest = forces.iter().flatten().map(|f| size(f)).fold(0.0, f64::max);
+            let forces_of = |loads: &Loads| -> Vec<Option<Vec<f64>>> {
+                (0..loads.times.len()).map(|k| force(loads, k * joints + joint.0, &along)).collect()
+            };
+            let forces = forces_of(&loads);
             let unit = |f: &Option<Vec<f64>>| {
                 let f = f.as_ref()?;
                 let size = size(f);
-                (size > NO_FORCE * largest).then(|| f.iter().map(|x| x / size).collect::<Vec<f64>>())
+                (size > no_force).then(|| f.iter().map(|x| x / size).collect::<Vec<f64>>())
             };
             let directions: Vec<Option<Vec<f64>>> = forces.iter().map(unit).collect();
-            let times = reversals(&loads.times, &forces, &directions);
+            let between = |times: &[f64]| {
+                let all = loads.times.iter().take(1).chain(times).copied().collect();
+                let forces = forces_of(&analysis.without_metrics(all).loads(&[]));
+                (0..times.len()).map(|k| forces.get(k + 1)?.clone()).collect()
+            };
+            let times = reversals(&loads.times, &forces, &directions, &between);
             if !times.is_empty() {
                 pins.changes.push(SideChange { joint, motion, times });
             }
-            pins.directions.push(directions);
+            pins.directions.push(Some(directions));
         }
         Some(pins)
     }
@@ -76,21 +91,15 @@ impl Pins {
     /// Change of an output with these derivatives at output time k, if every pin lies where the loads press it; `None`
     /// if that is not known of a pin that the output depends on.
     pub fn shift(&self, deviations: &Deviations, k: usize, g: &[f64]) -> Option<f64> {
-        let of_block = |(block, directions): (&super::deviations::Block, &Vec<Option<Vec<f64>>>)| {
+        let of_block = |(block, directions): (&super::deviations::Block, &Option<Vec<Option<Vec<f64>>>>)| {
             let g = &g[block.range()];
-            if g.iter().all(|g| *g == 0.0) {
+            let Some(directions) = directions.as_ref().filter(|_| g.iter().any(|g| *g != 0.0)) else {
                 return Some(0.0);
-            }
+            };
             let direction = directions.get(k)?.as_ref()?;
             Some(block.reach * g.iter().zip(direction).map(|(g, n)| g * n).sum::<f64>())
         };
-        deviations
-            .blocks
-            .iter()
-            .zip(&self.directions)
-            .filter(|(_, d)| d.iter().any(Option::is_some))
-            .map(of_block)
-            .sum()
+        deviations.blocks.iter().zip(&self.directions).map(of_block).sum()
     }
 }
 
@@ -110,26 +119,121 @@ fn force(loads: &Loads, place: usize, along: &[Vec3]) -> Option<Vec<f64>> {
     along.iter().map(|n| determined(n).then(|| force.dot(*n))).collect()
 }
 
-/// Times at which a force changes to the other side: where it vanishes, or interpolated between those at which it has
-/// a direction. Magnitudes are interpolated, so that bodies which turn differently have the same times.
-fn reversals(times: &[f64], forces: &[Option<Vec<f64>>], directions: &[Option<Vec<f64>>]) -> Vec<f64> {
+/// Largest force of a model over its motion: weight, and those of joints, drivers and applied loads. A moment counts as
+/// a force at the distance of the mechanism's size.
+fn largest_force(model: &Model, loads: &Loads) -> f64 {
+    let arm = model.size();
+    let of_joints = loads.joints.iter().flat_map(|joint| [joint.force.norm(), joint.moment.norm() / arm]);
+    let driver_arms: Vec<f64> = model
+        .drivers
+        .iter()
+        .map(|driver| match model.driven(driver).quantity {
+            Quantity::Angle => arm,
+            Quantity::Length | Quantity::Number => 1.0,
+        })
+        .collect();
+    let of_drivers = loads.drivers.iter().zip(driver_arms.iter().cycle()).map(|(d, arm)| d.force.abs() / arm);
+    let of_points = loads.pushes.iter().map(|push| push.norm());
+    let given = model.given_forces();
+    let is_moment = given.iter().map(|element| {
+        let force = model.elements[element.0].kind.force(model);
+        force.is_some_and(|force| force.dimension == Dimension::MOMENT)
+    });
+    let given_arms: Vec<f64> = is_moment.map(|is_moment| if is_moment { arm } else { 1.0 }).collect();
+    let of_given = loads.given.iter().zip(given_arms.iter().cycle()).map(|(force, arm)| force.abs() / arm);
+    let weight = model.mass() * model.gravity.norm();
+    of_joints.chain(of_drivers).chain(of_points).chain(of_given).fold(weight, f64::max)
+}
+
+fn size(force: &[f64]) -> f64 {
+    force.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// Two times between which a force turns by more than a right angle.
+struct Turn {
+    times: [f64; 2],
+    forces: [Vec<f64>; 2],
+    /// A force as small as this has vanished.
+    vanished: f64,
+}
+
+impl Turn {
+    fn of(times: [f64; 2], forces: [&Vec<f64>; 2]) -> Option<Self> {
+        let dot = forces[0].iter().zip(forces[1]).map(|(a, b)| a * b).sum::<f64>();
+        let vanished = VANISHES * forces.iter().map(|f| size(f)).fold(0.0, f64::max);
+        (dot < 0.0).then(|| Self { times, forces: forces.map(Clone::clone), vanished })
+    }
+
+    /// Time at which a force that reverses vanishes. Magnitudes are interpolated, so that bodies which turn differently
+    /// have the same times.
+    fn zero(&self) -> f64 {
+        let ([start, end], [from, to]) = (self.times, self.forces.each_ref().map(|f| size(f)));
+        start + (end - start) * from / (from + to)
+    }
+
+    /// Parts of the turn before and after a time at which the force is known, that are such turns themselves; or the
+    /// time at which the force vanishes.
+    fn parts(self, time: f64, force: &Vec<f64>) -> ControlFlow<f64, Vec<Self>> {
+        let Self { times: [start, end], forces: [from, to], vanished } = &self;
+        let parts = [([*start, time], [from, force]), ([time, *end], [force, to])];
+        let parts: Vec<Self> = parts
+            .into_iter()
+            .filter_map(|(times, forces)| Some(Self { vanished: *vanished, ..Self::of(times, forces)? }))
+            .collect();
+        match size(force) > *vanished {
+            true => ControlFlow::Continue(parts),
+            false => ControlFlow::Break(parts.first().map_or(time, Self::zero)),
+        }
+    }
+}
+
+/// Times at which a force changes to the other side: where it vanishes. `between` returns the force at times between
+/// the output times, where it is known: a force that turns without vanishing leads its pin around the hole.
+fn reversals(
+    times: &[f64],
+    forces: &[Option<Vec<f64>>],
+    directions: &[Option<Vec<f64>>],
+    between: &dyn Fn(&[f64]) -> Vec<Option<Vec<f64>>>,
+) -> Vec<f64> {
     let directed: Vec<usize> = (0..times.len()).filter(|k| directions[*k].is_some()).collect();
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let at = |pair: &[usize]| {
+    let (mut found, mut turns) = (Vec::new(), Vec::new());
+    for pair in directed.windows(2) {
         let [k, next] = [pair[0], pair[1]];
-        if dot(directions[k].as_ref()?, directions[next].as_ref()?) >= 0.0 {
-            return None;
-        }
+        let (Some(from), Some(to)) = (&forces[k], &forces[next]) else { continue };
+        let Some(turn) = Turn::of([times[k], times[next]], [from, to]) else { continue };
         let mut without_force = (k + 1..next).filter(|between| forces[*between].is_some());
-        if let Some(first) = without_force.next() {
-            return Some(0.5 * (times[first] + times[without_force.next_back().unwrap_or(first)]));
+        match without_force.next() {
+            Some(first) => {
+                let last = without_force.next_back().unwrap_or(first);
+                found.push(0.5 * (times[first] + times[last]));
+            }
+            None if size(from).min(size(to)) <= turn.vanished => found.push(turn.zero()),
+            None => turns.push(turn),
         }
-        let [from, to] = [k, next].map(|k| forces[k].as_ref().map(|f| dot(f, f).sqrt()));
-        let (from, to) = (from?, to?);
-        // F = 0 between F_k and -F_next
-        Some(times[k] + (times[next] - times[k]) * from / (from + to))
-    };
-    directed.windows(2).filter_map(at).collect()
+    }
+    for trial in 0..MOST_TRIALS {
+        if turns.is_empty() {
+            break;
+        }
+        let middle = |[start, end]: [f64; 2]| start + 0.5 * (end - start);
+        let at = |turn: &Turn| if trial % 2 == 0 { turn.zero() } else { middle(turn.times) };
+        let trials: Vec<f64> = turns.iter().map(at).collect();
+        let forces = between(&trials);
+        let solved = trials.into_iter().zip(forces);
+        for (turn, (time, force)) in std::mem::take(&mut turns).into_iter().zip(solved) {
+            let Some(force) = force else {
+                found.push(turn.zero());
+                continue;
+            };
+            match turn.parts(time, &force) {
+                ControlFlow::Continue(parts) => turns.extend(parts),
+                ControlFlow::Break(time) => found.push(time),
+            }
+        }
+    }
+    found.extend(turns.iter().map(Turn::zero));
+    found.sort_by(f64::total_cmp);
+    found
 }
 
 #[cfg(test)]
@@ -138,17 +242,15 @@ mod tests {
 
     /// Times at which a force of this size reverses, as seen by a body that turns by this angle per unit of time.
     fn seen(times: &[f64], force: impl Fn(f64) -> f64, turn: f64) -> Vec<f64> {
-        let forces: Vec<Option<Vec<f64>>> = times
-            .iter()
-            .map(|t| Some(vec![force(*t) * (turn * t).cos(), force(*t) * (turn * t).sin()]))
-            .collect();
+        let at = |t: &f64| Some(vec![force(*t) * (turn * t).cos(), force(*t) * (turn * t).sin()]);
+        let forces: Vec<Option<Vec<f64>>> = times.iter().map(at).collect();
         let unit = |f: &Option<Vec<f64>>| {
             let f = f.as_ref()?;
-            let size = f[0].hypot(f[1]);
+            let size = size(f);
             (size > NO_FORCE).then(|| f.iter().map(|x| x / size).collect())
         };
         let directions: Vec<Option<Vec<f64>>> = forces.iter().map(unit).collect();
-        reversals(times, &forces, &directions)
+        reversals(times, &forces, &directions, &|times| times.iter().map(at).collect())
     }
 
     #[test]
@@ -164,5 +266,20 @@ mod tests {
             assert!(near(&seen(&times, gap, turn), 0.5), "turn {turn}");
             assert!(seen(&times, |t| gap(t).abs(), turn).is_empty(), "turn {turn}");
         }
+    }
+
+    #[test]
+    fn a_force_that_turns_does_not_reverse() {
+        let times = [0.0, 1.0, 2.0, 3.0];
+        // Between output times a force of constant size turns by 120, 150 and 240 degrees.
+        for turn in [120.0_f64, 150.0, 240.0] {
+            assert!(seen(&times, |_| 1.0, turn.to_radians()).is_empty(), "turn {turn}");
+        }
+        // One that reverses does so where it vanishes, or where it jumps to the other side.
+        let turn = 60.0_f64.to_radians();
+        let found = seen(&times, |t| (t - 0.3) * (1.0 + t), turn);
+        assert!(found.len() == 1 && (found[0] - 0.3).abs() < 1e-4, "{found:?}");
+        let found = seen(&times, |t| if t < 1.3 { 1.0 } else { -1.0 }, 0.1);
+        assert!(found.len() == 1 && (found[0] - 1.3).abs() < 1e-3, "{found:?}");
     }
 }

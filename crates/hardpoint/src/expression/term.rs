@@ -81,7 +81,7 @@ impl<T: Real> ExpressionValue for T {
         match self.order(o) {
             Some(Ordering::Less | Ordering::Equal) => self,
             Some(Ordering::Greater) => o,
-            None => undefined(self + o),
+            None => unordered(self, o),
         }
     }
 
@@ -90,7 +90,7 @@ impl<T: Real> ExpressionValue for T {
         match self.order(o) {
             Some(Ordering::Greater | Ordering::Equal) => self,
             Some(Ordering::Less) => o,
-            None => undefined(self + o),
+            None => unordered(self, o),
         }
     }
 
@@ -99,7 +99,8 @@ impl<T: Real> ExpressionValue for T {
         if order_of_values(x0, x1) != Some(Ordering::Less) {
             return undefined(self);
         }
-        match (self.order(x0), self.order(x1)) {
+        let order = |end: T| self.order(end).or_else(|| order_of_values(self, end));
+        match (order(x0), order(x1)) {
             (Some(Ordering::Less), _) => h0,
             (_, Some(Ordering::Equal | Ordering::Greater)) => h1,
             (Some(_), Some(_)) => {
@@ -130,6 +131,16 @@ impl<T: Real> ExpressionValue for T {
 #[inline(always)]
 fn undefined<T: Real>(like: T) -> T {
     T::constant(f64::NAN) * like
+}
+
+/// Minimum or maximum of two operands without an order: of equal values the one whose derivatives are unknown.
+#[inline(always)]
+fn unordered<T: Real>(x: T, o: T) -> T {
+    match order_of_values(x, o) {
+        Some(_) if x.order(x).is_none() => x,
+        Some(_) => o,
+        None => undefined(x + o),
+    }
 }
 
 /// Ordering of the values alone; of bounds of values, where it is the same for all that they contain.

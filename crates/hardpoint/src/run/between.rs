@@ -166,7 +166,12 @@ impl Analysis<'_> {
             }
             found = Some(all);
         }
-        solution.between = found.map(Arc::new);
+        solution.between = found.map(|found| Arc::new(self.with_unlocated_times(found)));
+    }
+
+    /// Records which times of the motion at more times depend on the laws of the nominal design alone.
+    fn with_unlocated_times(&self, finer: Solution) -> Solution {
+        Solution { unlocated: self.times_between().to_vec(), ..finer }
     }
 
     /// Ends a solution where the same motion at finer times ends: these follow it more closely.
@@ -246,7 +251,7 @@ impl Analysis<'_> {
                 let mut found = Solution::default();
                 finer.walk(&design, between.motion.len(), &mut go_on, &mut found, &mut |_, _| ());
                 solution.stop = found.stop.clone();
-                solution.between = Some(Arc::new(found));
+                solution.between = Some(Arc::new(self.with_unlocated_times(found)));
             }
         }
     }

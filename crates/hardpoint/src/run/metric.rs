@@ -302,13 +302,31 @@ fn curves<'s>(solution: &'s Solution, metric: &Metric) -> Option<Curves<'s, f64>
 
 /// Curves at the times of the solution itself.
 fn curves_at<'s>(solution: &'s Solution, metric: &Metric) -> Option<Curves<'s, f64>> {
-    let (measured, times) = (&solution.measured, &solution.motion.times[..]);
+    let measured = &solution.measured;
+    let (times, rows) = times_and_rows(solution, metric);
     let now = |output: OutputSource| {
         let (m, orders, kinks) = column(measured, output)?;
-        let values = (0..measured.len()).map(|k| measured.value(k, m)).collect();
+        let values = rows.iter().map(|k| measured.value(*k, m)).collect();
         Some(SampledCurve { times, orders, kinks, values })
     };
     Some((now(metric.of)?, abscissa(metric, now)?))
+}
+
+/// Times of the curves of a metric, with their rows in the solution. An integral of straight lines depends on the times
+/// between which they are drawn: it has those that do not move with the design, and are the same whatever other metrics
+/// there are.
+fn times_and_rows<'s>(solution: &'s Solution, metric: &Metric) -> (&'s [f64], Vec<usize>) {
+    let Solution { motion, measured, unlocated, .. } = solution;
+    let has_rates = |output| column(measured, output).is_none_or(|(_, orders, _)| orders > 1);
+    let has_lines = [Some(metric.of), metric.over].into_iter().flatten().any(|output| !has_rates(output));
+    if unlocated.is_empty() || !has_lines || PathIntegral::of(&metric.take).is_none() {
+        return (&motion.times, (0..measured.len()).collect());
+    }
+    let row = |time: &f64| motion.times.binary_search_by(|t| t.total_cmp(time)).ok();
+    match unlocated.iter().map(row).collect() {
+        Some(rows) => (unlocated, rows),
+        None => (&motion.times, (0..measured.len()).collect()),
+    }
 }
 
 /// Curves with their derivatives by a variable; `None` if it is not admissible, or if no sensitivities were solved.
@@ -317,19 +335,21 @@ fn varied_curves<'s>(
     metric: &Metric,
     variable: VariableId,
 ) -> Option<Curves<'s, Dual<f64>>> {
-    let Solution { motion, measured, sensitivities, .. } = solution_of(solution);
+    let solution = solution_of(solution);
+    let Solution { measured, sensitivities, .. } = solution;
     if sensitivities.variables == 0 {
         return None;
     }
     sensitivities.at(0, variable.0)?;
+    let (times, rows) = times_and_rows(solution, metric);
     let varied = |output: OutputSource| {
         let (m, orders, kinks) = column(measured, output)?;
         let number = |k: usize| {
             let (x, d) = (measured.value(k, m), measured.d(k, variable, m));
             [0, 1, 2].map(|order| Dual { v: x[order], d: d[order] })
         };
-        let values = (0..measured.len()).map(number).collect();
-        Some(SampledCurve { times: &motion.times[..], orders, kinks, values })
+        let values = rows.iter().copied().map(number).collect();
+        Some(SampledCurve { times, orders, kinks, values })
     };
     Some((varied(metric.of)?, abscissa(metric, varied)?))
 }

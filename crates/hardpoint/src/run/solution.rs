@@ -20,6 +20,9 @@ pub struct Solution {
     pub stop: Option<Stop>,
     /// The same motion at more times, if metrics need them.
     pub(crate) between: Option<Arc<Solution>>,
+    /// Times of a motion at more times that no metric has located: they do not depend on the design. Empty if none is
+    /// located.
+    pub(crate) unlocated: Vec<f64>,
 }
 
 impl Solution {
