@@ -522,7 +522,7 @@ fn sensitivities_of_deflections_hold_at_the_time_of_the_largest() {
 pub(crate) fn verify_all(model: &Model) {
     let analysis = Analysis::new(model).unwrap();
     let options = Options::default();
-    let found = verify(&analysis, &analysis.run(), &options, |_| std::ops::ControlFlow::Continue(()));
+    let found = verify(&analysis, &analysis.run(), &options, |_| ControlFlow::Continue(()));
     let worst: Vec<_> = found.checks.iter().map(|check| check.worst().cloned()).collect();
     assert!(found.passed() && found.checks.len() == model.variables.len(), "{worst:?}");
 }
@@ -643,8 +643,7 @@ fn a_spring_between_its_ends_is_a_rod_that_is_elastic_along_itself() {
     );
     let model = file(&wishbone_on_elastic_tie_rod(8e6)).model;
     let analysis = Analysis::new(&model).unwrap();
-    let found =
-        verify(&analysis, &analysis.run(), &Options::default(), |_| std::ops::ControlFlow::Continue(()));
+    let found = verify(&analysis, &analysis.run(), &Options::default(), |_| ControlFlow::Continue(()));
     let worst: Vec<_> = found.checks.iter().map(|check| check.worst().cloned()).collect();
     assert!(found.passed() && found.checks.len() == model.variables.len(), "{worst:?}");
 }

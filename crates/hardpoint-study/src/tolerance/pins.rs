@@ -64,11 +64,11 @@ impl Pins {
                 pins.directions.push(None);
                 continue;
             };
-            let forces_of = |loads: &Loads| -> Vec<Option<Vec<f64>>> {
+            let forces_of = |loads: &Loads| -> Vec<PinForce> {
                 (0..loads.times.len()).map(|k| force(loads, k * joints + joint.0, &along)).collect()
             };
             let forces = forces_of(&loads);
-            let unit = |f: &Option<Vec<f64>>| {
+            let unit = |f: &PinForce| {
                 let f = f.as_ref()?;
                 let size = size(f);
                 (size > no_force).then(|| f.iter().map(|x| x / size).collect::<Vec<f64>>())
@@ -112,7 +112,7 @@ fn offset(model: &Model, variable: VariableId) -> Option<Vec3> {
 }
 
 /// Force on body j along these directions, which turn with it; `None` if a component is not determined.
-fn force(loads: &Loads, place: usize, along: &[Vec3]) -> Option<Vec<f64>> {
+fn force(loads: &Loads, place: usize, along: &[Vec3]) -> PinForce {
     let load = loads.joints.get(place)?;
     let ([force, _], [known, _]) = (load.in_body, load.known_in_body);
     let determined = |n: &Vec3| (0..3).all(|axis| known[axis] || n[axis].abs() < 1e-12);
@@ -148,6 +148,9 @@ fn largest_force(model: &Model, loads: &Loads) -> f64 {
 fn size(force: &[f64]) -> f64 {
     force.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
+
+/// Force on a pin along its play; `None` where it is not known.
+type PinForce = Option<Vec<f64>>;
 
 /// Two times between which a force turns by more than a right angle.
 struct Turn {
@@ -191,9 +194,9 @@ impl Turn {
 /// the output times, where it is known: a force that turns without vanishing leads its pin around the hole.
 fn reversals(
     times: &[f64],
-    forces: &[Option<Vec<f64>>],
+    forces: &[PinForce],
     directions: &[Option<Vec<f64>>],
-    between: &dyn Fn(&[f64]) -> Vec<Option<Vec<f64>>>,
+    between: &dyn Fn(&[f64]) -> Vec<PinForce>,
 ) -> Vec<f64> {
     let directed: Vec<usize> = (0..times.len()).filter(|k| directions[*k].is_some()).collect();
     let (mut found, mut turns) = (Vec::new(), Vec::new());
@@ -243,8 +246,8 @@ mod tests {
     /// Times at which a force of this size reverses, as seen by a body that turns by this angle per unit of time.
     fn seen(times: &[f64], force: impl Fn(f64) -> f64, turn: f64) -> Vec<f64> {
         let at = |t: &f64| Some(vec![force(*t) * (turn * t).cos(), force(*t) * (turn * t).sin()]);
-        let forces: Vec<Option<Vec<f64>>> = times.iter().map(at).collect();
-        let unit = |f: &Option<Vec<f64>>| {
+        let forces: Vec<PinForce> = times.iter().map(at).collect();
+        let unit = |f: &PinForce| {
             let f = f.as_ref()?;
             let size = size(f);
             (size > NO_FORCE).then(|| f.iter().map(|x| x / size).collect())
