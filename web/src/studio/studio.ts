@@ -95,6 +95,8 @@ export class Studio {
   #accepted: VariableSetting[] = []
   #wanted?: VariableSetting[]
   #busy = false
+  /** Number of models that are being opened. */
+  #opening = 0
   #resting?: ReturnType<typeof setTimeout>
   #hand = 0
   /** The text of the present design, or of the last one that had a text. */
@@ -660,7 +662,8 @@ export class Studio {
 
   /** Text and sensitivities follow the design. */
   async #update(): Promise<void> {
-    if (this.#busy || this.#grips?.isDragging) return
+    // A model that is opened ends with an update of its own; this one would end its request.
+    if (this.#busy || this.#opening > 0 || this.#grips?.isDragging) return
     const { state } = this
     // The hand has let go: what comes next is another step. Where the design stopped, it is noted as it is.
     this.#recordStep()
@@ -738,6 +741,7 @@ export class Studio {
     this.#next = model.text
     this.#version++
     this.#sensing.stop()
+    this.#opening++
     try {
       const { model: solved, report } = await this.#page(model)
       const former = this.model.case
@@ -756,6 +760,8 @@ export class Studio {
       this.#showStatus(messageOf(error))
       this.root.dataset.settled = 'yes'
       if (error instanceof RequestError) this.#editor?.showMessages(error.messages)
+    } finally {
+      this.#opening--
     }
   }
 

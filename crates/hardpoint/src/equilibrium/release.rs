@@ -104,9 +104,8 @@ pub(crate) fn release(
         if open.drivers.len() > own.0
             && let Some(Driver { joint, coordinate, .. }) = open.drivers.pop()
         {
-            let (law, is_reversed) = (Law::constant(0.0), false);
-            let name = open.drivers[d.0].name.clone();
-            open.drivers[d.0] = Driver { name, joint, coordinate, law, is_reversed };
+            let released = &mut open.drivers[d.0];
+            (released.joint, released.coordinate) = (joint, coordinate);
         }
     }
     let mut topology = Topology::of_openings(&open, formulation)?;
