@@ -575,19 +575,27 @@ time = {{ end = 1, steps = 4 }}
     assert!(!shown.contains("HP0305"), "{shown}");
 }
 
-/// A flap whose driver is released; a spring holds it against a force that grows, up to an end stop at 12 degrees.
-const FLAP: &str = r#"
+/// A flap that is turned by this law up to an end stop.
+fn flap(most: u32, law: &str, steps: u32, more: &str) -> String {
+    format!(
+        r#"
 name = "flap"
-units = { length = "mm", angle = "deg" }
-hardpoints = { A = [0, 0, 0] }
-bodies = { arm = {} }
+units = {{ length = "mm", angle = "deg" }}
+hardpoints = {{ A = [0, 0, 0] }}
+bodies = {{ arm = {{}} }}
 joints.hinge.type = "revolute"
 joints.hinge.bodies = ["ground", "arm"]
 joints.hinge.at = "A"
 joints.hinge.axis = "y"
-joints.hinge.limits.angle = { max = 12, stop = true }
-drivers.turn = { joint = "hinge", law = "3*t" }
-time = { end = 1, steps = 5 }
+joints.hinge.limits.angle = {{ max = {most}, stop = true }}
+drivers.turn = {{ joint = "hinge", law = "{law}" }}
+time = {{ end = 1, steps = {steps} }}
+{more}"#
+    )
+}
+
+/// The driver of a flap is released; a spring holds it against a force that grows.
+const RELEASED: &str = r#"
 equilibrium = { released = ["turn"] }
 [forces]
 spring = { type = "torsion_spring", joint = "hinge", stiffness = 1 }
@@ -597,8 +605,9 @@ pull = { type = "force", at = { body = "arm", at = [100, 0, 0] }, force = 200, a
 #[test]
 fn a_released_driver_at_an_end_stop_has_its_coordinate_and_not_its_law() {
     // The hinge is at its limit of 12 deg there, in either sense of the driver; the law is at 1.9 deg.
+    let flap = flap(12, "3*t", 5, RELEASED);
     for (sense, value) in [("", "12 deg"), (", reversed = true", "-12 deg")] {
-        let text = FLAP.replace("law = \"3*t\"", &format!("law = \"3*t\"{sense}"));
+        let text = flap.replace("law = \"3*t\"", &format!("law = \"3*t\"{sense}"));
         let file = hardpoint_file::parse(&text, "drawn.toml").unwrap();
         let (solution, summary) = solved(&file);
         let stop = diagnose::stop(&file, solution.stop.as_ref().unwrap(), solution.motion.len(), None);
@@ -610,7 +619,7 @@ fn a_released_driver_at_an_end_stop_has_its_coordinate_and_not_its_law() {
         );
     }
     // With all of the force at the start it begins beyond the stop.
-    let beyond = FLAP.replace("law = \"t\" }", "law = \"1 + t\" }");
+    let beyond = flap.replace("law = \"t\" }", "law = \"1 + t\" }");
     let file = hardpoint_file::parse(&beyond, "drawn.toml").unwrap();
     let (solution, _) = solved(&file);
     let stop = solution.stop.as_ref().unwrap();
@@ -622,20 +631,8 @@ fn a_released_driver_at_an_end_stop_has_its_coordinate_and_not_its_law() {
 
 #[test]
 fn a_study_of_a_nominal_motion_that_ends_early_was_not_made() {
-    let text = r#"
-name = "flap"
-units = { length = "mm", angle = "deg" }
-hardpoints = { A = [0, 0, 0] }
-bodies = { arm = {} }
-joints.hinge.type = "revolute"
-joints.hinge.bodies = ["ground", "arm"]
-joints.hinge.at = "A"
-joints.hinge.axis = "y"
-joints.hinge.limits.angle = { max = 85, stop = true }
-drivers.turn = { joint = "hinge", law = "90*t" }
-time = { end = 1, steps = 20 }
-"#;
-    let file = hardpoint_file::parse(text, "drawn.toml").unwrap();
+    let text = flap(85, "90*t", 20, "");
+    let file = hardpoint_file::parse(&text, "drawn.toml").unwrap();
     let models = file.model.motions();
     let motions = Motions::of(&models, Formulation::Relative).unwrap();
     let stopped = motions.evaluate(&[], &mut StudyCost::default(), &|| true).unwrap_err();

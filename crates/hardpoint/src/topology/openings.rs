@@ -98,9 +98,6 @@ fn eliminate(
     weight: impl Fn(CoordinateId) -> Option<f64>,
 ) -> Vec<CoordinateId> {
     let mut pivots = Vec::new();
-    for row in &mut rows {
-        row.retain(|c, _| weight(*c).is_some());
-    }
     loop {
         let entries = rows.iter().enumerate().flat_map(|(r, row)| row.iter().map(move |(c, x)| (r, *c, *x)));
         let candidates = entries.filter(|(.., x)| x.abs() > RANK_TOLERANCE * largest);
