@@ -134,6 +134,9 @@ record! {
             ClearanceProof::NotProved { from, to, reason, .. } => (None, Some((from, to, reason))),
         };
     }
+    /// A time at which the shapes are nearer than claimed, s, and their distance there, m.
+    #[serde(skip)]
+    nearer: Option<[f64; 2]> = nearer(found);
     /// Distance that is claimed.
     claim: f64 = units.from_si(Dimension::LENGTH, claim);
     /// True if it is proved.
@@ -144,6 +147,16 @@ record! {
     unproved: Option<[f64; 2]> = failure.map(|(from, to, _)| [from, to]);
     /// Reason why nothing is proved there.
     reason: Option<String> = failure.map(|(_, _, reason)| reason_in_words(model, reason));
+}
+
+/// The time and distance that refute a claim.
+fn nearer(found: ClearanceProof) -> Option<[f64; 2]> {
+    match found {
+        ClearanceProof::NotProved { reason: ProofFailure::Nearer { time, distance }, .. } => {
+            Some([time, distance])
+        }
+        ClearanceProof::NotProved { .. } | ClearanceProof::Proved { .. } => None,
+    }
 }
 
 fn reason_in_words(model: &Model, reason: ProofFailure) -> String {
@@ -206,12 +219,23 @@ pub fn proof(
             matches!(proof, ClearanceProof::NotProved { reason: ProofFailure::Unresolved, .. });
         (ProofFact::of(model, units, claim, proof), is_unresolved)
     };
-    if found.is_constant {
-        return Some(prove(OF_CONSTANT).0);
+    let (exact, is_unresolved) = prove(if found.is_constant { OF_CONSTANT } else { ROUND_OFF });
+    if exact.nearer.is_some() {
+        // Is it nearer than required, too?
+        let pairs = model.clearances.iter().flat_map(|clearance| &clearance.pairs);
+        let required = pairs.filter(|pair| pair.shapes == found.shapes).filter_map(|pair| pair.min);
+        let mut claims: Vec<f64> = required.map(|min| min - KEPT * model.size()).collect();
+        claims.retain(|claim| *claim < least);
+        claims.sort_by(f64::total_cmp);
+        let refuted = claims.into_iter().find_map(|claim| {
+            let proof = ProofFact::of(model, units, claim, prover.prove(found.shapes, claim));
+            proof.nearer.is_some().then_some(proof)
+        });
+        return Some(refuted.unwrap_or(exact));
     }
-    let (exact, is_unresolved) = prove(ROUND_OFF);
     // The least distance may be that over a part of the motion, as between points that move as one.
-    let lower = is_unresolved.then(|| prove(OF_CONSTANT).0).filter(|lower| lower.proved);
+    let lower =
+        (is_unresolved && !found.is_constant).then(|| prove(OF_CONSTANT).0).filter(|lower| lower.proved);
     Some(lower.unwrap_or(exact))
 }
 
@@ -228,6 +252,8 @@ record! {
         // Where the cores meet, the shapes are at least as deep in each other as their distance.
         let below = |min: f64| least.is_some_and(|at| at.cores_meet || at.distance[0] < min - KEPT * model.size());
         let unknown_at = found.unknown_at();
+        let nearer = proof.as_ref().and_then(|proof| proof.nearer);
+        let violated_at = nearer.filter(|[_, at]| pair.min.is_some_and(|min| *at < min - KEPT * model.size()));
     }
     /// Name of the clearance.
     clearance: String = clearance.name.clone();
@@ -239,8 +265,13 @@ record! {
     least: Option<f64> = least.map(|at| length(at.distance[0]));
     /// Distance that is required.
     min: Option<f64> = pair.min.map(length);
-    /// False if the least distance is below the required one, or not known.
-    kept: bool = least.is_some() && unknown_at.is_none() && !pair.min.is_some_and(below);
+    /// False if the least distance is below the required one, or not known, or if the proof found a time at which the
+    /// distance is below the required one.
+    kept: bool =
+        least.is_some() && unknown_at.is_none() && violated_at.is_none() && !pair.min.is_some_and(below);
+    /// A time of the proof at which the distance is below the required one, s, and the distance there.
+    #[serde(skip)]
+    violated_at: Option<[f64; 2]> = violated_at.map(|[time, distance]| [time, length(distance)]);
     /// First time at which the distance is not known, s.
     #[serde(skip)]
     unknown_at: Option<f64> = unknown_at;
@@ -399,6 +430,13 @@ impl ClearanceFact {
         }
         if let Some(unknown) = unknown {
             lines.push(unknown);
+        } else if let Some((min, [time, distance])) = self.min.zip(self.violated_at) {
+            lines.push(format!(
+                "  NEARER than the required {}: {} at t = {} s",
+                with_unit(min, unit),
+                with_unit(distance, unit),
+                rounded(time, DIGITS)
+            ));
         } else if let Some(min) = self.min.filter(|_| !self.kept) {
             lines.push(remedy(min, lowest.distance, &lowest.sensitivities, lowest.cores_meet, unit));
         }

@@ -351,7 +351,7 @@ fn loads(file: &ModelFile, course: &Course) -> Vec<Diagnostic> {
                 .help("release only drivers that something else supports, and remove redundant constraints: `check` names them")
         } else if !has_friction || friction_is_known() {
             d.note("redundant constraints share it, depending on their stiffness")
-                .help("measure what is not shared (in a plane `radial`, or components in it), or remove a redundant constraint: `check` names them")
+                .help("measure what is not shared (in a plane `radial` of a hinge, or of a slide `force_x`, `force_y` or `force_z` in the plane), or remove a redundant constraint: `check` names them")
         } else {
             let Loads { shared_friction: shared, ambiguous_friction: ambiguous, .. } = solved();
             if !ambiguous.is_empty() {

@@ -104,12 +104,22 @@ static FORMS: &[(Table, Read)] = &[
             must "about": LINE, "\"z\"";
             /// The body that carries the direction. Default: `ground`.
             may "relative_to": BODY, "\"ground\"";
+            /// Direction of the body whose angle is prescribed, or its part perpendicular to `about`. Default: from
+            /// the global axis that is closest to perpendicular.
+            may "axis2": LINE, "\"x\"";
         },
         |r, fields, place| {
             let body = r.name_of(fields, "body");
             let about = r.line_of(fields, "about", place);
             let relative_to = r.name_if(fields, "relative_to");
-            Some(DrivenDraft::Orientation { body: body?, relative_to: relative_to?, about: about? })
+            let axis2 = fields.get("axis2").map(|_| r.line_of(fields, "axis2", place));
+            let axis2 = axis2.map_or(Some(None), |line| line.map(Some));
+            Some(DrivenDraft::Orientation {
+                body: body?,
+                relative_to: relative_to?,
+                about: about?,
+                axis2: axis2?,
+            })
         },
     ),
     (

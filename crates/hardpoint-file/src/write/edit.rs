@@ -1,6 +1,6 @@
 //! Edits of a model file for a changed design: the same text with new numbers.
 
-use hardpoint::constraint::Row;
+use hardpoint::constraint::{MarkerPair, Row};
 use hardpoint::design::{Geometry, JointConstants};
 use hardpoint::joint::{Need, Quantity};
 use hardpoint::model::{Change, Direction, Hardpoint, Joint, Model, VariableId};
@@ -413,11 +413,12 @@ impl Edit<'_> {
             });
             let x: Value = format!("[{}]", texts.join(", ")).parse().expect("a list of numbers is a value");
             let by = self.of(|c| !matches!(c, Change::Law(_) | Change::Parameter(_)));
-            let table = table_at(&mut self.document, &[Key("joints"), Key(&joint.name)]);
+            let [section, what] = if joint.unnamed { ["drivers", "driver"] } else { ["joints", "joint"] };
+            let table = table_at(&mut self.document, &[Key(section), Key(&joint.name)]);
             if table.map(|table| add(table, "axis2", x)).is_none() && !self.is_elsewhere(&by, &joint.name) {
                 let why =
-                    format!("it turns the x axis of joint `{}`, which has no table in the file", joint.name);
-                self.refuse(&by, why, "write the joint in a table of its own, with `axis2`");
+                    format!("it turns the x axis of {what} `{}`, which has no table in the file", joint.name);
+                self.refuse(&by, why, &format!("write the {what} in a table of its own, with `axis2`"));
             }
         }
     }
@@ -593,13 +594,13 @@ impl Edit<'_> {
 }
 
 /// True if a joint has the default x axis, which its coordinates count along, or elastic laws and reactions where there
-/// are loads.
+/// are loads. Unnamed joints are those of drivers, named like these.
 fn has_default_x(model: &Model, joint: &Joint) -> bool {
-    let is_default = !joint.unnamed && joint.axis.is_some() && joint.axis2.is_none();
+    let is_default = joint.axis.is_some() && joint.axis2.is_none();
     is_default
         && match joint.kind.axis2 {
             Need::Optional => true,
-            Need::Orienting => !model.elements.is_empty(),
+            Need::Orienting => !joint.unnamed && !model.elements.is_empty(),
             Need::Required | Need::OnBodyJ | Need::Unused => false,
         }
 }
@@ -652,6 +653,16 @@ fn difference(model: &Model, values: &[f64], saved: &Model) -> Option<(String, S
                 joint.axis2.is_some() && joint.kind.axis2 != Need::OnBodyJ || has_default_x(model, joint);
             if has_x && !near(a.rot.cols[0], b.rot.cols[0], 1.0) {
                 return found("second axis of joint", &joint.name);
+            }
+        }
+        if joint.kind.rows.contains(&Row::ConstantVelocity) {
+            // The angle of one shaft relative to the other.
+            let [a, b] = [(model, &changed), (saved, &again)].map(|(model, geometry)| {
+                let [i, j] = [0, 1].map(|e| world(model, geometry, e));
+                Row::ConstantVelocity.residual(&MarkerPair { i, j, axes: Mat3::IDENTITY }, 0.0)
+            });
+            if !((a - b).abs() <= SAME) {
+                return found("relation of the shafts of joint", &joint.name);
             }
         }
         if let (Some(a), Some(b)) = (&joint.curve, &other.curve) {

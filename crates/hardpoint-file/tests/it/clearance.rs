@@ -1183,3 +1183,206 @@ fn shapes_that_touch_at_one_end_of_the_motion_only_are_listed_there() {
         assert!((from - time).abs() <= 1e-8 && (to - time).abs() <= 1e-8, "{law}: {touching:?}");
     }
 }
+
+/// A strip with a spike on it, whose tip is at (31.1875, -1.875, 0) and passes rods along z at 0.311875 s.
+const STRIP: &str = "v -500 -5 -20\nv 500 0 -20\nv 500 0 20\nv -500 -5 20\nv 31 -4 0\nv 31.375 -4 0\nv 31.1875 -1.875 0\n\
+                     f 1 3 2\nf 1 4 3\nf 5 6 7\n";
+const SPIKE: &str = r#"
+name = "strip"
+units = { length = "mm", angle = "deg" }
+time = { end = 1.0, steps = 37 }
+hardpoints = { P = [0, 0, -30], Q = [0, 0, 30] }
+bodies = { table = {}, slide = {} }
+[joints]
+j = { type = "translational", bodies = ["ground", "table"], at = [0, 0, 0], axis = "x" }
+s = { type = "translational", bodies = ["ground", "slide"], at = [0, 5, 100], axis = "z" }
+leg = { type = "leg", bodies = ["ground", "slide"], at = ["P", "Q"] }
+[drivers]
+motor = { joint = "j", law = "-100*t" }
+lift = { joint = "s", law = "5*t" }
+[shapes]
+spike = { mesh = "strip.obj", body = "table" }
+rod = { capsule = "leg", radius = 1 }
+bar = { capsule = ["P", "Q"], body = "ground", radius = 1 }
+[clearances]
+leg = { between = ["spike", "rod"] }
+fixed = { between = ["spike", "bar"] }
+[design]
+rod_up = { move = ["P", "Q"], along = "y" }
+"#;
+
+/// A metric of a clearance that is solved at its own time, with the search's value.
+fn assert_metric(model: &Model, name: &str, found: &PairClearance, what: &str) -> Vec<f64> {
+    let solution = Analysis::new(model).unwrap().run();
+    let values = hardpoint::run::metrics(model, &solution);
+    let k = model.metrics.iter().position(|m| m.name == name).unwrap();
+    let least = found.least().unwrap().at;
+    let value = values[k].value.unwrap();
+    assert!((value - least.distance[0]).abs() < 1e-9, "{what}: {value} instead of {least:?}");
+    assert!(values[k].error.is_none_or(|error| error < 1e-9), "{what}: {:?}", values[k].error);
+    values[k].d.clone()
+}
+
+#[test]
+fn a_spike_that_passes_a_rod_between_two_times_is_nearest_there_and_its_metric_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("strip.toml");
+    std::fs::write(folder.path().join("strip.obj"), STRIP).unwrap();
+    for steps in [1, 3, 7, 9, 10, 37] {
+        std::fs::write(&path, SPIKE.replace("steps = 37", &format!("steps = {steps}"))).unwrap();
+        let model = hardpoint_file::read(&path).unwrap_or_else(|e| panic!("{e}")).model;
+        let found = Analysis::new(&model).unwrap().clearances(&[]);
+        for name in ["leg", "fixed"] {
+            let (what, pair) = (format!("{name}, {steps} steps"), pair(&model, &found, name));
+            let least = pair.least().unwrap().at;
+            assert_near(least.distance[0] * 1e3, 1.875 - 1.0, &what);
+            assert_near(least.time, 0.311_875, &what);
+            let d = assert_metric(&model, &format!("{name}.min"), pair, &what);
+            assert_near(d[model.variable("rod_up").unwrap().0], 1.0, &what);
+        }
+    }
+}
+
+#[test]
+fn a_spike_on_a_strip_that_is_as_far_at_all_output_times_is_nearest_where_it_passes() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("strip.toml");
+    let flat = "v -500 0 -20\nv 500 0 -20\nv 500 0 20\nv -500 0 20\nv 31 0 0\nv 31.375 0 0\nv 31.1875 3 0\n\
+                f 1 3 2\nf 1 4 3\nf 5 6 7\n";
+    std::fs::write(folder.path().join("strip.obj"), flat).unwrap();
+    let text = SPIKE.replace("[0, 0, -30]", "[0, 5, -30]").replace("[0, 0, 30]", "[0, 5, 30]");
+    for steps in [1, 2, 3, 10] {
+        std::fs::write(&path, text.replace("steps = 37", &format!("steps = {steps}"))).unwrap();
+        let model = hardpoint_file::read(&path).unwrap_or_else(|e| panic!("{e}")).model;
+        let found = Analysis::new(&model).unwrap().clearances(&[]);
+        for name in ["leg", "fixed"] {
+            let (what, pair) = (format!("{name}, {steps} steps"), pair(&model, &found, name));
+            let least = pair.least().unwrap().at;
+            assert!(!pair.is_constant, "{what}");
+            assert_near(least.distance[0] * 1e3, 5.0 - 3.0 - 1.0, &what);
+            assert_metric(&model, &format!("{name}.min"), pair, &what);
+        }
+    }
+}
+
+/// A gear with 50 turns of its second shaft per turn of the first, and a screw with 40 turns over its way: an arm on
+/// each passes through a pin once per turn.
+#[test]
+fn what_turns_faster_than_its_driver_passes_a_pin_in_each_turn() {
+    let gear = r#"
+name = "gear"
+units = { length = "mm", angle = "deg" }
+time = { end = 1.0, steps = 50 }
+bodies = { slow = {}, fast = {} }
+[joints]
+a = { type = "revolute", bodies = ["ground", "slow"], at = [0, 0, 0], axis = "z" }
+b = { type = "revolute", bodies = ["ground", "fast"], at = [100, 0, 0], axis = "z" }
+[couplers]
+g = { type = "gear", joints = ["a", "b"], teeth = [50, 1] }
+[drivers]
+motor = { joint = "a", law = "360*t" }
+[shapes]
+arm = { capsule = [[100, 0, 0], [150, 0, 0]], body = "fast", radius = 2 }
+pin = { sphere = [60, 10, 0], body = "ground", radius = 3 }
+[clearances.c]
+between = ["arm", "pin"]
+"#;
+    let screw = r#"
+name = "screw"
+units = { length = "mm", angle = "deg" }
+time = { end = 1.0, steps = 50 }
+bodies = { spindle = {} }
+[joints]
+s = { type = "screw", bodies = ["ground", "spindle"], at = [0, 0, 0], axis = "z", lead = 5 }
+[drivers]
+feed = { joint = "s", coordinate = "displacement", law = "200*t" }
+[shapes]
+arm = { capsule = [[0, 0, 0], [50, 0, 0]], body = "spindle", radius = 2 }
+pin = { capsule = [[-40, 15, -20], [-40, 15, 220]], body = "ground", radius = 3 }
+[clearances.c]
+between = ["arm", "pin"]
+"#;
+    for (text, turns) in [(gear, 50), (screw, 40)] {
+        for steps in [1, 7, 39, 40, 50] {
+            let model = model_of(&text.replace("steps = 50", &format!("steps = {steps}")));
+            let found = Analysis::new(&model).unwrap().clearances(&[]);
+            let (what, pair) = (format!("{}, {steps} steps", model.name), pair(&model, &found, "c"));
+            assert_eq!(pair.intervals().len(), turns, "{what}");
+            // The axes of both meet.
+            let least = pair.least().unwrap().at;
+            assert!((least.distance[0] + 5e-3).abs() < 1e-8, "{what}: {least:?}");
+            assert_metric(&model, "c.min", pair, &what);
+        }
+    }
+}
+
+/// An arm on a crank whose elastic joints deflect under its weight, against a pin.
+fn elastic_arm(steps: usize, shapes: [&str; 2]) -> String {
+    let [ball, pin] = shapes;
+    format!(
+        r#"
+name = "elastic"
+units = {{ length = "mm", angle = "deg" }}
+time = {{ end = 1.0, steps = {steps} }}
+hardpoints = {{ O = [0, 0, 0], A = [40, 0, 0], B = [90, 20, 5], G = [70, 10, 0] }}
+bodies = {{ crank = {{}}, arm = {{}} }}
+[parameters]
+r = {{ value = 3, unit = "length" }}
+[joints]
+jo = {{ type = "revolute", bodies = ["ground", "crank"], at = "O", axis = "z", axis2 = "x" }}
+ja = {{ type = "revolute", bodies = ["crank", "arm"], at = "A", axis = "z", axis2 = "x" }}
+[drivers]
+m = {{ joint = "jo", law = "150*t" }}
+n = {{ joint = "ja", law = "-30*t" }}
+[forces]
+e1 = {{ type = "elastic_joint", joint = "jo", x = 100, y = 150, about_x = 300, about_y = 400 }}
+e2 = {{ type = "elastic_joint", joint = "ja", about_z = 50, about_x = 80, about_y = 80, x = 70, y = 70 }}
+[gravity]
+along = "-y"
+[masses]
+w = {{ type = "rigid", centre = {{ body = "arm", at = "G" }}, mass = 8 }}
+[equilibrium]
+[shapes]
+ball = {{ body = "arm", {ball}, radius = "r" }}
+pin = {{ body = "ground", {pin} }}
+[clearances.c]
+between = ["ball", "pin"]
+"#
+    )
+}
+
+#[test]
+fn the_least_distance_at_an_equilibrium_is_a_metric_at_its_own_time() {
+    for steps in [8, 50] {
+        let pin = "capsule = [[60, 60, 3], [60, 60, -40]], radius = 2";
+        let model = model_of(&elastic_arm(steps, ["sphere = \"B\"", pin]));
+        let found = Analysis::new(&model).unwrap().clearances(&[]);
+        let (what, pair) = (format!("{steps} steps"), pair(&model, &found, "c"));
+        // The same at output times 1e-5 s apart.
+        assert!((pair.least().unwrap().at.distance[0] - 2.391_065_409e-3).abs() < 1e-11, "{what}");
+        let d = assert_metric(&model, "c.min", pair, &what);
+        assert_near(d[model.variable("r").unwrap().0], -1.0, &what);
+    }
+}
+
+#[test]
+fn a_contact_at_an_equilibrium_has_a_beginning_and_an_end_at_any_output_times() {
+    for steps in [3, 10] {
+        let pin = "capsule = [[60, 70, 3], [60, 70, -40]], radius = 2";
+        let model = model_of(&elastic_arm(steps, ["capsule = [\"A\", \"B\"]", pin]));
+        let found = Analysis::new(&model).unwrap().clearances(&[]);
+        let touching = pair(&model, &found, "c").intervals();
+        let [[from, to]] = touching[..] else { panic!("{steps} steps: {touching:?}") };
+        assert!((from - 0.261_556_6).abs() < 1e-7, "{steps} steps: {from}");
+        assert!((to - 0.304_051_7).abs() < 1e-7, "{steps} steps: {to}");
+    }
+}
+
+#[test]
+fn a_least_distance_over_some_output_times_is_one_minimum() {
+    let drum = "cylinder = [[60, 70, 3], [60, 70, -40]], round = 1, radius = 9";
+    let model = model_of(&elastic_arm(400, ["sphere = \"B\"", drum]));
+    let found = Analysis::new(&model).unwrap().clearances(&[]);
+    let times: Vec<f64> = pair(&model, &found, "c").minima.iter().map(|m| m.at.time).collect();
+    assert_eq!(times.len(), 1, "{times:?}");
+}

@@ -796,3 +796,129 @@ time = { end = 1, steps = 4 }
     assert_eq!(file.model.variables.len(), again.model.variables.len());
     assert!(apart(0.1, &solved(&file, &design), &solved(&again, &[])) < SAME_MOTION);
 }
+
+/// Step of central differences, m: their truncation is 1e-10 of third derivatives.
+const STEP: f64 = 1e-5;
+
+/// Two shafts in fixed bearings that a constant-velocity joint connects.
+fn shafts(design: &str) -> String {
+    format!(
+        r#"
+name = "shafts"
+units = {{ length = "m", angle = "rad" }}
+hardpoints = {{ P = [0, 0, 0], A = [-1, 0, 0], B = [1, 0.4, 0] }}
+bodies = {{ one = {{}}, two = {{}} }}
+drivers.turn = {{ joint = "a", law = "0.1 + 2*t" }}
+points.tip = {{ body = "two", at = [0.9, 0.5, 0.3] }}
+time = {{ at = [0, 0.3, 1] }}
+[joints]
+a = {{ type = "revolute", bodies = ["ground", "one"], axis = {{ through = ["A", "P"] }} }}
+cv = {{ type = "constant_velocity", bodies = ["one", "two"], at = "P", axis = {{ through = ["A", "P"] }}, axis2 = {{ through = ["P", "B"] }} }}
+b = {{ type = "cylindrical", bodies = ["ground", "two"], at = "P", axis = {{ through = ["P", "B"] }} }}
+[measures]
+out = {{ type = "coordinate", joint = "b", coordinate = "angle" }}
+x = {{ type = "position", point = "tip", along = [1, 0.2, 0.3] }}
+[design]
+{design}
+"#
+    )
+}
+
+#[test]
+fn shafts_of_a_constant_velocity_joint_rotate_equally_in_every_design() {
+    let moves = "A_z = { move = \"A\", along = \"z\" }\nA_y = { move = \"A\", along = \"y\" }\n\
+                 B = { move = \"B\", along = [0, -1, 1] }\n";
+    let text = shafts(moves);
+    let file = parse(&text, "shafts.toml").unwrap_or_else(|e| panic!("{e}"));
+    let written = |design: &[f64]| {
+        let saved = file.edit(design).unwrap_or_else(|e| panic!("{e}"));
+        parse(&saved, "shafts.toml").unwrap_or_else(|e| panic!("{e}\n{saved}"))
+    };
+    let index = |solution: &Solution, name: &str| solution.measured.index(name).unwrap();
+    for design in [[0.0; 3], [0.2, 0.0, 0.0], [0.15, -0.3, 0.25]] {
+        let changed = Analysis::new(&file.model).unwrap().solve(Run::new().at(&design));
+        assert!(apart(1.0, &changed, &solved(&written(&design), &[])) < 1e-12, "{design:?}");
+        for k in 0..changed.motion.len() {
+            let [out, rate, _] = changed.measured.value(k, index(&changed, "out"));
+            let t = file.model.times[k];
+            // The angle of the driven shaft is that of the driving one, whatever the angle between them.
+            assert!(
+                (out - 0.1 - 2.0 * t).abs() < 1e-12 && (rate - 2.0).abs() < 1e-12,
+                "{design:?}: {out} {rate}"
+            );
+        }
+        for v in 0..3 {
+            let mut at = |by: f64| {
+                let mut design = design;
+                design[v] += by;
+                solved(&written(&design), &[])
+            };
+            let [low, high] = [-STEP, STEP].map(&mut at);
+            for k in 0..changed.motion.len() {
+                for name in ["out", "x"] {
+                    let m = index(&changed, name);
+                    for order in 0..3 {
+                        let found = changed.measured.d(k, VariableId(v), m)[order];
+                        let difference = high.measured.value(k, m)[order] - low.measured.value(k, m)[order];
+                        let error = (found - difference / (2.0 * STEP)).abs();
+                        assert!(error < 1e-7, "{design:?}: d {name} / d {v}, order {order}: {error:e}");
+                    }
+                }
+            }
+        }
+    }
+    // A turn of one shaft's marker is an angle between the shafts, for which a file has no number.
+    let turned = shafts("turn = { markers = [{ joint = \"cv\", on = \"j\", turn = [0.3, 0.2, 0.1] }] }");
+    let turned = turned.replace("axis2 = { through = [\"P\", \"B\"] }", "axis2 = [1, 0.4, 0]");
+    let file = parse(&turned, "shafts.toml").unwrap_or_else(|e| panic!("{e}"));
+    let found = file.edit(&[0.1]).unwrap_err();
+    let [d] = found.list() else { panic!("{found}") };
+    assert!(
+        d.code == "HP0505" && d.notes[0].ends_with("another relation of the shafts of joint `cv`"),
+        "{found}"
+    );
+}
+
+#[test]
+fn the_angle_of_a_body_is_that_of_the_same_direction_in_the_saved_file() {
+    let text = |axis2: &str| {
+        format!(
+            r#"
+name = "head"
+units = {{ length = "m", angle = "deg" }}
+hardpoints = {{ O = [0, 0, 0], T = [0.3, -0.1, 1] }}
+bodies = {{ b = {{}} }}
+joints.u = {{ type = "universal", bodies = ["ground", "b"], at = "O", axis = [1, 0.2, 0], axis2 = [0.2, -1, -0.32] }}
+time = {{ at = [0, 0.3, 0.7, 1.2] }}
+[drivers]
+a = {{ joint = "u", coordinate = "angle", law = "30*sin(t)" }}
+h = {{ body = "b", about = {{ through = ["O", "T"] }}, law = "20*sin(2*t) + 5*t"{axis2} }}
+[measures]
+a2 = {{ type = "coordinate", joint = "u", coordinate = "angle2" }}
+seen = {{ type = "angle", from = [1, 3, 0], to = {{ body = "b", axis = [1, 3, 0] }}, about = [0.3, -0.1, 1] }}
+[design]
+T_x = {{ move = "T", along = "x" }}
+"#
+        )
+    };
+    for axis2 in ["", ", axis2 = [1, 3, 0]", ", axis2 = [1, 3, 0.5]"] {
+        let file = parse(&text(axis2), "head.toml").unwrap_or_else(|e| panic!("{e}"));
+        let saved = file.edit(&[0.1]).unwrap_or_else(|e| panic!("{e}"));
+        let again = parse(&saved, "head.toml").unwrap_or_else(|e| panic!("{e}\n{saved}"));
+        let off = apart(1.0, &solved(&file, &[0.1]), &solved(&again, &[]));
+        assert!(off < 1e-12, "{axis2}: {off:e}\n{saved}");
+        assert!(saved.matches("axis2 = [").count() == 2, "{saved}");
+        let solution = solved(&file, &[]);
+        let law = |t: f64| 20.0 * (2.0 * t).sin() + 5.0 * t;
+        let seen = (0..4).map(|k| {
+            let found = solution.measured.value(k, solution.measured.index("seen").unwrap())[0];
+            (found.to_degrees() - law(file.model.times[k])).abs()
+        });
+        let worst = seen.fold(0.0, f64::max);
+        // The direction whose angle is measured is the one that is driven, or not.
+        assert!(if axis2 == ", axis2 = [1, 3, 0]" { worst < 1e-10 } else { worst > 0.1 }, "{axis2}: {worst}");
+    }
+    let parallel = parse(&text(", axis2 = [0.6, -0.2, 2]"), "head.toml").unwrap_err();
+    let [d] = parallel.list() else { panic!("{parallel}") };
+    assert!(d.code == "HP0209" && d.message.contains("driver `h`"), "{parallel}");
+}

@@ -462,3 +462,60 @@ fn angles_of_orientations_agree_with_designs_that_are_solved_anew() {
         assert!((0..3).all(|order| felt(order) > 1e-4), "{name} does not follow the design");
     }
 }
+
+/// A slide moves along (0.3, 0.7, 0.2), and a wheel on it does not rise.
+#[test]
+fn a_slope_over_a_measure_that_does_not_move_has_no_value() {
+    for steps in [4, 200] {
+        let text = format!(
+            r#"
+name = "slope"
+units = {{ length = "mm", angle = "deg" }}
+hardpoints = {{ A = [10, 20, 30], C = [0, 700, 300] }}
+bodies = {{ s = {{}}, w = {{}} }}
+points.P = {{ body = "s", at = [13, 24, 37] }}
+time = {{ end = 1, steps = {steps} }}
+design.lean = {{ tilt = "j", about = "z" }}
+[joints]
+j = {{ type = "translational", bodies = ["ground", "s"], at = "A", axis = [0.3, 0.7, 0.2] }}
+k = {{ type = "translational", bodies = ["ground", "w"], at = "C", axis = [0.3, 0.7, 0] }}
+[drivers]
+d = {{ joint = "j", law = "10*t" }}
+e = {{ joint = "k", law = "10*t" }}
+[wheels.w]
+body = "w"
+centre = "C"
+radius = 300
+spin_axis = [0.1, 1, 0.2]
+bump = "e"
+[measures]
+along = {{ type = "position", point = "P", along = [0.3, 0.7, 0.2] }}
+x = {{ type = "position", point = "P", along = "x" }}
+over = {{ type = "position", point = "P", along = [0.7, -0.3, 0] }}
+over_2 = {{ type = "position", point = "P", along = [0.2, 0, -0.3] }}
+over_3 = {{ type = "position", point = "P", along = [0.1, -0.1, 0.2] }}
+moving = {{ type = "slope", of = "x", over = "along", driver = "d" }}
+still = {{ type = "slope", of = "x", over = "over", driver = "d" }}
+still_2 = {{ type = "slope", of = "x", over = "over_2", driver = "d" }}
+still_3 = {{ type = "slope", of = "x", over = "over_3", driver = "d" }}
+recession = {{ type = "bump_recession", wheel = "w" }}
+"#
+        );
+        let file = parse(&text, "slope.toml").unwrap_or_else(|e| panic!("{e}"));
+        let solution = Analysis::new(&file.model).unwrap().run();
+        for (m, output) in solution.measured.outputs.iter().enumerate() {
+            for k in 0..solution.motion.len() {
+                let found = (solution.measured.value(k, m)[0], solution.measured.d(k, VariableId(0), m)[0]);
+                match output.name.as_str() {
+                    // x = 0.3 s / L,  along = s,  with L^2 = 0.62
+                    "moving" => assert!((found.0 - 0.3 / 0.62_f64.sqrt()).abs() < 1e-12, "{found:?}"),
+                    "recession" => assert!(found.0.is_nan() && found.1.is_nan(), "{found:?}"),
+                    name if name.starts_with("still") => {
+                        assert!(found.0.is_nan() && found.1.is_nan(), "{name}: {found:?}");
+                    }
+                    name => assert!(found.0.is_finite() && found.1.is_finite(), "{name}: {found:?}"),
+                }
+            }
+        }
+    }
+}

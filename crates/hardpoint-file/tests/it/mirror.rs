@@ -294,3 +294,32 @@ fn broken_mirrors() {
         snapshot(name, &text);
     }
 }
+
+/// The direction whose angle a driver prescribes is mirrored as an arrow, the direction of the view as an axis.
+#[test]
+fn the_angle_of_an_image_seen_along_a_direction_is_that_of_its_original() {
+    let text = r#"
+name = "two heads"
+units = { length = "m", angle = "deg" }
+hardpoints = { left_O = [0, 1, 0] }
+bodies = { left = {} }
+time = { at = [0, 0.3, 0.7, 1.2] }
+[mirror]
+across = "y"
+names = { left = "right" }
+[joints]
+left_u = { type = "universal", bodies = ["ground", "left"], at = "left_O", axis = [1, 0.2, 0], axis2 = [0.2, -1, -0.32] }
+[drivers]
+left_a = { joint = "left_u", coordinate = "angle", law = "30*sin(t)" }
+left_h = { body = "left", about = [0.3, -0.1, 1], axis2 = [1, 2, 0], law = "20*sin(2*t) + 5*t" }
+[measures]
+left_a2 = { type = "coordinate", joint = "left_u", coordinate = "angle2" }
+"#;
+    let file = parse(text, "heads.toml").unwrap_or_else(|e| panic!("{e}"));
+    let solution = Analysis::new(&file.model).unwrap().run();
+    let value = |k: usize, name: &str| solution.measured.value(k, solution.measured.index(name).unwrap())[0];
+    for k in 0..4 {
+        let [left, right] = ["left_a2", "right_a2"].map(|name| value(k, name));
+        assert!((left - right).abs() < 1e-12 && (k == 0 || left.abs() > 1e-3), "{left} {right}");
+    }
+}

@@ -402,7 +402,9 @@ fn the_planar_shorthand_of_every_driver_equals_its_long_form() {
             "DrivenCoordinate" => &[("joint = \"pin\"", "")],
             "DrivenPosition" => &[("point = \"p\", along = <0.3 -0.9>", "")],
             "DrivenDistance" => &[("from = \"p\", to = { body = \"ground\", at = <-30 600> }", "")],
-            "DrivenOrientation" => &[("body = \"c\"<about>", "")],
+            "DrivenOrientation" => {
+                &[("body = \"c\"<about>", ""), ("body = \"c\"<about>, axis2 = <1 0.5>", "")]
+            }
             "DrivenMeasure" => &[
                 ("measure = \"own\"", "own = { type = \"coordinate\", joint = \"pin\" }\n"),
                 (

@@ -1,5 +1,7 @@
 //! No text makes the reader panic or hang, every diagnostic can be shown, and twice the text takes twice the work.
 
+use std::collections::BTreeSet;
+
 use hardpoint_file::parse;
 use proptest::prelude::*;
 use toml::de::{DeTable, DeValue};
@@ -371,3 +373,98 @@ fn a_value_that_cannot_be_read_is_one_mistake() {
     }
     assert!(more.is_empty() && tried > 1000, "{} of {tried}:\n{}", more.len(), more.join("\n"));
 }
+
+/// A name that no entry has is reported where it is written, and none of the consequences.
+#[test]
+fn a_misspelt_name_is_one_mistake() {
+    let models = [
+        include_str!("../../../../models/front_axle.toml"),
+        include_str!("../../../../models/stewart.toml"),
+        include_str!("../../../../models/gear_train.toml"),
+        include_str!("../../../hardpoint-cli/templates/k-and-c.toml"),
+        include_str!("../../../hardpoint-cli/templates/delta.toml"),
+        include_str!("../../../hardpoint-cli/templates/solid-axle.toml"),
+        MEASURES_OF_DRIVERS,
+    ];
+    let (mut tried, mut more) = (0, Vec::new());
+    for text in MODELS.into_iter().chain(models) {
+        parse(text, "sound.toml").unwrap_or_else(|e| panic!("{e}"));
+        let document = DeTable::parse(text).unwrap().into_inner();
+        let tables = document.iter().filter_map(|(_, value)| value.get_ref().as_table());
+        let names: BTreeSet<&str> =
+            tables.flat_map(|table| table.keys()).map(|k| k.get_ref().as_ref()).collect();
+        let mut ranges = Vec::new();
+        ranges_of(text, &DeValue::Table(document.clone()), &mut ranges);
+        for range in ranges {
+            let name = text[range.clone()].trim_matches('"');
+            // Other words of a mirror make other images.
+            if text[..range.start].lines().last().is_some_and(|line| line.starts_with("names = {")) {
+                continue;
+            }
+            let is_name = |name: &str| names.contains(name);
+            let owner = name.rsplit_once('.').map(|(owner, _)| owner);
+            if name.len() + 2 != range.len() || !is_name(name) && !owner.is_some_and(is_name) {
+                continue;
+            }
+            let misspelt = match owner.filter(|owner| is_name(owner)) {
+                Some(owner) => name.replacen(owner, &format!("{owner}q"), 1),
+                None => format!("{name}q"),
+            };
+            let broken = format!("{}\"{misspelt}\"{}", &text[..range.start], &text[range.end..]);
+            // The name of the model, or of a design, may be any.
+            let Err(found) = parse(&broken, "broken.toml") else { continue };
+            if found.list().len() != 1 {
+                more.push(format!("`{misspelt}` in place of `{name}`:\n{found}"));
+            }
+            tried += 1;
+        }
+    }
+    assert!(more.is_empty() && tried > 500, "{} of {tried}:\n{}", more.len(), more.join("\n"));
+}
+
+/// Whatever names drivers, or depends on the quantities of several.
+const MEASURES_OF_DRIVERS: &str = r#"
+name = "names of drivers"
+units = { length = "mm", angle = "deg" }
+gravity = { along = "-z" }
+hardpoints = { O = [0, 0, 0] }
+bodies = { b = {}, c = {}, d = {} }
+masses.m = { type = "rigid", centre = "p", mass = 1 }
+points.p = { body = "d", at = [10, 20, 30] }
+[joints]
+hinge = { type = "revolute", bodies = ["ground", "b"], at = "O", axis = "x" }
+swivel = { type = "revolute", bodies = ["b", "c"], at = "O", axis = "z" }
+slide = { type = "translational", bodies = ["c", "d"], at = "O", axis = "z" }
+[drivers]
+one = { joint = "hinge", law = "5*t" }
+two = { joint = "swivel", law = { type = "harmonic", amplitude = 5, frequency = 1 } }
+three = { joint = "slide", law = "0.1*t" }
+[measures]
+turn = { type = "coordinate", joint = "hinge" }
+s = { type = "slope", of = "p.x", over = "p.y", driver = "one", together = ["two"] }
+o = { type = "slope", of = "p.x", over = "turn", driver = "two", opposed = ["one"] }
+per_s = { type = "expression", expression = "2*s + o" }
+jacobian = { type = "dexterity", points = ["p"], drivers = ["one", "two"] }
+all = { type = "expression", expression = "jacobian^2" }
+force = { type = "driver_force", driver = "three" }
+power = { type = "driver_power", driver = "two" }
+work = { type = "expression", expression = "force*turn" }
+[metrics]
+end = { of = "per_s", over = "turn", take = "value", at = 1 }
+most = { of = "work", over = "turn", take = "max" }
+[design]
+rate = { driver = "two", parameter = "amplitude" }
+O_z = { move = "O", along = "z", bounds = [-1, 1] }
+[cases]
+up = { laws = { one = "t", three = "2*t" } }
+still = { laws = { two = "3*t" }, other_drivers = "as_in_model" }
+chart = { grid = { one = { from = -1, to = 1, steps = 2 }, two = { from = -1, to = 1, steps = 2 } } }
+[page]
+plots = [{ y = ["s", "jacobian"], over = "turn" }, { y = ["work"] }]
+[optimize]
+variables = ["O_z"]
+goals = { end = { target = 1 } }
+[time]
+end = 1
+steps = 4
+"#;

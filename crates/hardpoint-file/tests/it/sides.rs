@@ -308,7 +308,9 @@ pub(crate) fn forms_of_drivers(hold: Hold<'_>) {
                 &[],
             )],
             "DrivenOrientation" => {
-                vec![("body = \"left_b\", about = [0.2, 0.1, 1]".into(), none(""), false, &[])]
+                let about = "body = \"left_b\", about = [0.2, 0.1, 1]";
+                let with_x = format!("{about}, axis2 = [0.3, 1, 0.1]");
+                vec![(about.into(), none(""), false, &[]), (with_x, none(""), false, &[])]
             }
             "DrivenContact" => {
                 vec![("wheel = \"left\"".into(), wheel.to_owned(), false, &["steer_angle"])]

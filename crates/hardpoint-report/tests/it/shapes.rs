@@ -6,7 +6,7 @@ use hardpoint::Analysis;
 use hardpoint::run::Run;
 use hardpoint::space::{Mat3, Quat, Vec3};
 use hardpoint_file::ModelFile;
-use hardpoint_report::clearance::ClearanceFact;
+use hardpoint_report::clearance::{self, ClearanceFact};
 use hardpoint_report::course::Course;
 use hardpoint_report::page::{BodyTrack, PairTrack, Payload, ShapeMark};
 use hardpoint_report::payload::{ChangedDesign, Request, payload};
@@ -173,4 +173,31 @@ fn a_distance_that_is_not_known_is_not_kept() {
     let sentences = ClearanceFact::sentences(&facts[k..=k]).join("\n");
     let expected = format!("the distance of {} and {} is not known at t = {time} s", shapes[0], shapes[1]);
     assert!(sentences.contains(&expected), "{sentences}");
+}
+
+#[test]
+fn a_requirement_that_the_proof_refutes_is_not_kept() {
+    let mut file = model("studies/knee.toml");
+    let mut found = Analysis::new(&file.model).unwrap().clearances(&[]);
+    let apart = found.pairs.iter_mut().find(|pair| pair.least().is_some_and(|m| m.at.distance[0] > 0.0));
+    let apart = apart.expect("a pair that is apart");
+    let (shapes, least) = (apart.shapes, apart.least().unwrap().at.distance[0]);
+    // A search that misses the least distance.
+    apart.minima.iter_mut().for_each(|minimum| minimum.at.distance[0] += 0.1);
+    for (min, kept) in [(least + 1e-4, false), (least - 1e-4, true)] {
+        let pairs = file.model.clearances.iter_mut().flat_map(|clearance| &mut clearance.pairs);
+        pairs.filter(|pair| pair.shapes == shapes).for_each(|pair| pair.min = Some(min));
+        let analysis = Analysis::new(&file.model).unwrap();
+        let mut prover = analysis.clearance_prover(&[]).unwrap();
+        let facts = ClearanceFact::proved(&file.model, file.units, &found, &mut |pair| {
+            (pair.shapes == shapes)
+                .then(|| clearance::proof(&file.model, file.units, &mut prover, pair))
+                .flatten()
+        });
+        let fact = facts.iter().find(|fact| fact.proof.is_some()).unwrap();
+        assert!(fact.kept == kept && !fact.proof.as_ref().unwrap().proved, "{min} {least}");
+        let sentences = ClearanceFact::sentences(std::slice::from_ref(fact)).join("\n");
+        assert!(sentences.contains("the shapes are nearer at t ="), "{sentences}");
+        assert_eq!(sentences.contains("NEARER than the required"), !kept, "{sentences}");
+    }
 }

@@ -198,6 +198,7 @@ fn arms() -> Draft {
                     body: "arm_3".into(),
                     relative_to: None,
                     about: DirectionDraft::Along(Vec3::new(0.0, 1.0, 0.0)),
+                    axis2: None,
                 },
             ),
         ],
@@ -677,6 +678,8 @@ pin = {{ type = "friction", joint = "H", coefficient = {coefficient}, radius = 8
     let mild = shown(0.2);
     assert!(mild.contains("HP0409") && mild.contains("redundant constraints share it"), "{mild}");
     assert!(!mild.contains("jams"), "{mild}");
+    // `radial` of a slide, which is measured here, is no remedy.
+    assert!(mild.contains("`radial` of a hinge, or of a slide `force_x`"), "{mild}");
 }
 
 #[test]

@@ -445,9 +445,17 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
     /// Returns the frame of marker e of a joint whose axes pass through hardpoints.
     ///
     /// The smallest rotation takes z to its new direction; then x rotates about z to the part of `axis2` that is
-    /// perpendicular to z, as of a file with the new hardpoints.
+    /// perpendicular to z, as of a file with the new hardpoints. Of two shafts that rotate equally, marker j is marker
+    /// i after the smallest rotation of one shaft onto the other.
     fn followed_frame(&self, joint: &Joint, e: usize, values: &Values<T>) -> Mat3<T> {
-        self.followed(joint.frames[e].spread(), joint.axes_of_marker(e), values)
+        let own = |e: usize| self.followed(joint.frames[e].spread(), joint.axes_of_marker(e), values);
+        let axes = [joint.axis, joint.axis2];
+        let follows = axes.iter().any(|axis| matches!(axis, Some(Direction::Through(..))));
+        if e == 1 && follows && joint.kind.rows.contains(&Row::ConstantVelocity) {
+            let [m_i, m_j] = number::both([0, 1], own);
+            return Mat3::between(m_i.cols[2], m_j.cols[2]) * m_i;
+        }
+        own(e)
     }
 
     /// Returns axes that have this direction in the nominal design, and whose z and x axes follow these directions.

@@ -131,6 +131,8 @@ struct Checker<'a> {
     faults: Vec<DraftError>,
     /// Model joint of each joint of the draft; `None` for faulty ones.
     joint_ids: Vec<Option<JointId>>,
+    /// Model driver of each driver of the draft; `None` for faulty ones.
+    driver_ids: Vec<Option<DriverId>>,
     /// Model wheel of each wheel of the draft, and model axle of each axle.
     wheel_ids: Vec<Option<WheelId>>,
     axle_ids: Vec<Option<AxleId>>,
@@ -287,6 +289,7 @@ impl<'a> Checker<'a> {
             model,
             faults,
             joint_ids,
+            driver_ids: Vec::new(),
             wheel_ids: Vec::new(),
             axle_ids: Vec::new(),
             shape_ids: Vec::new(),
@@ -678,9 +681,10 @@ impl<'a> Checker<'a> {
     fn check_unconnected_bodies(&mut self) {
         let named: BTreeSet<&str> =
             self.draft.joints.iter().flat_map(|j| &j.bodies).map(String::as_str).collect();
-        // An unread joint may connect any body, and a faulty force may hold any.
-        let all_known =
-            !self.is_table_unread("joint") && !self.draft.unread.anywhere(Section::Joints, "bodies");
+        // An unread joint, or one of an unknown body, may connect any body, and a faulty force may hold any.
+        let all_known = !self.is_table_unread("joint")
+            && !self.draft.unread.anywhere(Section::Joints, "bodies")
+            && named.iter().all(|name| self.number_of("body", name).is_some());
         let forces = self.model.elements.iter().filter(|e| !e.kind.has_mass()).count();
         let forces_known = !self.is_table_unread("force") && forces == self.draft.forces.len();
         for (index, b) in self.draft.bodies.iter().enumerate() {

@@ -384,6 +384,9 @@ pub enum DrivenDraft {
         relative_to: Option<String>,
         /// The direction.
         about: DirectionDraft,
+        /// Direction of the body whose angle, as seen along `about`, is prescribed; its part perpendicular to `about`
+        /// counts. If `None`, one that depends on `about` alone.
+        axis2: Option<DirectionDraft>,
     },
     /// Value of a measure, such as wheel travel or a steer angle.
     Measure(String),

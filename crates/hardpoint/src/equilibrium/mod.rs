@@ -19,6 +19,6 @@ mod second;
 mod solver;
 mod waypoints;
 
-pub(crate) use release::{Released, release};
+pub(crate) use release::{OpenPosition, Released, release, release_at};
 pub(crate) use second::{Along, Curvatures};
 pub(crate) use solver::EquilibriumSolver;

@@ -1,13 +1,21 @@
 //! The mechanism with its elastic joints open.
 
+use std::collections::BTreeSet;
+
 use crate::joint::{self, DIRECTIONS, elastic, free_directions, with_turns};
 use crate::law::Law;
 use crate::model::element::Compliance;
 use crate::model::{BodyId, Driver, DriverId, GROUND, HardpointId, Joint, JointId, LoadMode, Model};
 use crate::space::Mat3;
 use crate::topology::{
-    CutReason, Formulation, JointRole, OpenTree, Topology, TopologyError, dependence, open_tree,
+    CutReason, Dependence, Formulation, JointRole, OpenTree, Topology, TopologyError, TreeRow, dependence,
+    open_tree,
 };
+
+/// Least pivot of the constraints, as a fraction of that in the design configuration, below which a motion that ends
+/// has reached a limit of the mechanism. It goes with the root of the distance from there, which is a billionth of a
+/// step.
+const NEARLY_SINGULAR: f64 = 1e-3;
 
 /// A mechanism whose elastic joints are open: drivers prescribe the openings.
 #[derive(Clone, Debug)]
@@ -17,6 +25,8 @@ pub(crate) struct Released {
     pub model: Model,
     /// Drivers whose forces are zero in equilibrium: the user's that are released, then the openings.
     pub openings: Vec<DriverId>,
+    /// The model with every opening driven, of which the constraints determine some.
+    pub every_opening: Model,
 }
 
 /// Opens the elastic joints of a model with equilibrium, and plans its solution.
@@ -76,15 +86,59 @@ pub(crate) fn release(
     }
     elastic_joints.retain(|(joint, ..)| !cut[joint.0]);
     drive_all(&mut open, &elastic_joints);
-    let mut depends = dependence(&open, own);
+    let mut depends = dependence(&open, own, None);
     while !depends.free_balls.is_empty() {
         // A free rotation of a ball is an opening about one of three axes.
         for joint in &depends.free_balls {
             let kind = &mut open.joints[joint.0].kind;
             *kind = with_turns(kind);
         }
-        depends = dependence(&open, own);
+        depends = dependence(&open, own, None);
     }
+    choose(model, open, depends, formulation)
+}
+
+/// A position of a mechanism whose elastic joints are open, as its constraints show it.
+pub(crate) struct OpenPosition {
+    /// True if the constraints can hardly follow the drivers that are held, whatever the others do.
+    pub is_singular: bool,
+    /// The mechanism with the openings that the constraints leave there; `None` if they are the same as before, or if
+    /// there is no plan with them.
+    pub other: Option<(Released, Topology)>,
+}
+
+/// Examines a position with these rows, of a model that was opened before.
+pub(crate) fn release_at(
+    model: &Model,
+    (every_opening, open): (&Model, &Model),
+    rows: &[TreeRow],
+    formulation: Formulation,
+) -> OpenPosition {
+    let own = DriverId(model.drivers.len());
+    let depends = dependence(every_opening, own, Some(rows));
+    let design = dependence(every_opening, own, None);
+    let least = NEARLY_SINGULAR * design.pivots.iter().copied().fold(1.0, f64::min);
+    // Redundant constraints are small pivots everywhere.
+    let is_singular = depends.pivots.iter().filter(|size| **size > least).count() < design.pivots.len();
+    let driven = |model: &Model| -> BTreeSet<(usize, usize)> {
+        model.drivers.iter().map(|driver| (driver.joint.0, driver.coordinate)).collect()
+    };
+    let other = (depends.free_balls.is_empty())
+        .then(|| choose(model, every_opening.clone(), depends, formulation).ok())
+        .flatten()
+        .filter(|(released, _)| driven(&released.model) != driven(open));
+    OpenPosition { is_singular, other }
+}
+
+/// Drives the openings that the constraints do not determine, and plans the solution.
+fn choose(
+    model: &Model,
+    mut open: Model,
+    depends: Dependence,
+    formulation: Formulation,
+) -> Result<(Released, Topology), TopologyError> {
+    let own = DriverId(model.drivers.len());
+    let every_opening = open.clone();
     for (joint, freedom) in depends.free {
         let coordinates = open.joints[joint.0].kind.coordinates;
         if let Some(coordinate) = coordinates.iter().position(|c| c.freedom == Some(freedom)) {
@@ -119,7 +173,7 @@ pub(crate) fn release(
     }
     let released = model.equilibrium.iter().flat_map(|e| e.released.iter().copied());
     let openings = released.chain((own.0..open.drivers.len()).map(DriverId)).collect();
-    Ok((Released { model: open, openings }, topology))
+    Ok((Released { model: open, openings, every_opening }, topology))
 }
 
 /// Error of a joint that is cut and cannot be. If it closes a loop, it would be cut in relative coordinates too, and

@@ -35,6 +35,8 @@ const LONGEST: f64 = 0.5;
 /// Shortest part of the way from one output time, or turn of a law, to the next: if it is rejected, there is no
 /// equilibrium near by.
 const SHORTEST: f64 = 1e-9;
+/// The same while it is not known whether other openings describe the way better.
+const SHORTEST_AT_FIRST: f64 = 0.01;
 /// Maximum number of equilibria that a prediction uses.
 const PREDICTED_FROM: usize = 3;
 /// Maximum sum of the sizes of the weights of a prediction: 7 for uniform output times. A larger sum amplifies what
@@ -94,6 +96,10 @@ impl Rejection {
 
 /// Accepted equilibrium, at an output time or between two.
 struct Accepted {
+    /// `None` on the way to the first output time.
+    time: Option<f64>,
+    /// Part of the way to the first output time.
+    part: f64,
     /// Values of all drivers.
     drivers: Vec<f64>,
     loads: GivenLoads,
@@ -106,8 +112,6 @@ struct Passed {
     time: f64,
     /// Values of all drivers.
     drivers: Vec<f64>,
-    /// Values of the user's drivers.
-    reported: Vec<f64>,
     stiffness: Vec<f64>,
 }
 
@@ -134,6 +138,8 @@ pub(crate) struct EquilibriumSolver<'a> {
     last: Accepted,
     /// The last equilibria at output times, for predictions.
     path: Vec<Passed>,
+    /// The last output time, and values of the user's drivers there.
+    reported: Option<(f64, Vec<f64>)>,
     /// Per opening: the force that it needs as a driver.
     forces: Vec<f64>,
     /// Derivatives of the forces by the openings, and its factors.
@@ -149,6 +155,8 @@ pub(crate) struct EquilibriumSolver<'a> {
     is_regular: bool,
     /// True if the derivatives are those at the equilibrium that was found last.
     is_prepared: bool,
+    /// True if no other openings describe the way to the next output time better.
+    pub is_patient: bool,
     /// Iterations so far.
     pub iterations: usize,
 }
@@ -179,11 +187,14 @@ impl<'a> EquilibriumSolver<'a> {
             held,
             fixed: design_map.fixed(&constant),
             last: Accepted {
+                time: None,
+                part: 0.0,
                 drivers: vec![0.0; model.drivers.len()],
                 loads: GivenLoads::none(model),
                 stiffness: None,
             },
             path: Vec::new(),
+            reported: None,
             forces: vec![0.0; n],
             stiffness: vec![0.0; n * n],
             tangent: Elimination::new(n),
@@ -192,6 +203,7 @@ impl<'a> EquilibriumSolver<'a> {
             terms: vec![0.0; n],
             is_regular: false,
             is_prepared: false,
+            is_patient: false,
             iterations: 0,
         }
     }
@@ -199,18 +211,16 @@ impl<'a> EquilibriumSolver<'a> {
     /// Moves the mechanism to its equilibrium at time t, at rest. Before the first it is in the design configuration,
     /// without loads. If laws turn on the way from the last output time, it is followed to there first.
     pub fn step(&mut self, one: &mut Stepper<'_>, t: f64) -> Result<(), Box<Stop>> {
-        let mut from = self.path.last().map(|passed| passed.time);
-        let mut targets = from.map_or_else(Vec::new, |from| self.waypoints(one, [from, t]));
+        let mut targets = self.last.time.map_or_else(Vec::new, |from| self.waypoints(one, [from, t]));
         targets.push(t);
         let mut certain = true;
         for (k, target) in targets.into_iter().enumerate() {
             // Where a law turns, a polynomial through equilibria before may lead to another one.
             let prediction = if k == 0 { self.predicted(target) } else { None };
-            certain = match self.follow(one, from, target, prediction) {
+            certain = match self.follow(one, target, prediction) {
                 Ok(certain) => certain,
                 Err(stop) => return Err(self.undefined_law(one, &stop, t).unwrap_or(stop)),
             };
-            from = Some(target);
         }
         if self.path.len() == PREDICTED_FROM {
             self.path.remove(0);
@@ -220,13 +230,34 @@ impl<'a> EquilibriumSolver<'a> {
             one.effort.uncertain_stability = Some(t);
         }
         advance::count(one);
-        self.path.push(Passed {
-            time: t,
-            drivers: self.last.drivers.clone(),
-            reported: self.reported(one),
-            stiffness: self.stiffness.clone(),
-        });
+        let (drivers, stiffness) = (self.last.drivers.clone(), self.stiffness.clone());
+        self.path.push(Passed { time: t, drivers, stiffness });
+        self.reported = Some((t, self.user_drivers(one)));
+        self.is_patient = false;
         Ok(())
+    }
+
+    /// Continues from the equilibrium that another solver accepted last, with other openings of the same mechanism.
+    /// The position of the stepper is there. Returns false if it is not an equilibrium that can be continued.
+    pub fn continue_from(&mut self, before: &Self, one: &mut Stepper<'_>) -> bool {
+        self.last = Accepted {
+            time: before.last.time,
+            part: before.last.part,
+            drivers: one.mechanism.drivers.iter().map(|[value, ..]| *value).collect(),
+            loads: before.last.loads.clone(),
+            stiffness: None,
+        };
+        self.reported.clone_from(&before.reported);
+        self.iterations = before.iterations;
+        let given = self.last.loads.clone();
+        let is_stable = self.examine(one, &given).is_ok();
+        self.last.stiffness = Some(self.stiffness.clone());
+        is_stable
+    }
+
+    /// Part of the way to the first output time, and the time, of the equilibrium that was accepted last.
+    pub fn reached(&self) -> (f64, Option<f64>) {
+        (self.last.part, self.last.time)
     }
 
     /// Times between two output times at which laws of loads and drivers turn.
@@ -236,16 +267,17 @@ impl<'a> EquilibriumSolver<'a> {
         waypoints(of_drivers.chain(of_loads), ends)
     }
 
-    /// Follows the equilibrium from the one that was accepted last, at time `from` (or in the design configuration
-    /// without loads), to that at time t. Returns true if it is certainly stable.
+    /// Follows the equilibrium from the one that was accepted last (or the design configuration without loads) to that
+    /// at time t. Returns true if it is certainly stable.
     fn follow(
         &mut self,
         one: &mut Stepper<'_>,
-        from: Option<f64>,
         t: f64,
         mut prediction: Option<Prediction>,
     ) -> Result<bool, Box<Stop>> {
-        let (mut done, mut part, mut certain) = (0.0, 1.0, true);
+        let from = self.last.time;
+        let mut done = if from.is_none() { self.last.part } else { 0.0 };
+        let (mut part, mut certain) = (1.0, true);
         while done < 1.0 {
             let next = f64::min(done + part, 1.0);
             self.is_prepared = false;
@@ -260,14 +292,16 @@ impl<'a> EquilibriumSolver<'a> {
                 Ok((drivers, is_stable)) => {
                     advance::accept_at_rest(one, time);
                     certain = is_stable;
-                    self.last = Accepted { drivers, loads, stiffness: Some(self.stiffness.clone()) };
                     (done, part) = (next, 2.0 * part);
+                    let reached = (from.is_some() || done == 1.0).then_some(time);
+                    let stiffness = Some(self.stiffness.clone());
+                    self.last = Accepted { time: reached, part: done, drivers, loads, stiffness };
                 }
                 // The same way from the equilibrium that was found last.
                 Err(_) if is_predicted => {}
                 Err(rejection) => {
                     part *= 0.5;
-                    if part < SHORTEST {
+                    if part < if self.is_patient { SHORTEST } else { SHORTEST_AT_FIRST } {
                         return Err(self.stop(one, (from, t), done, rejection));
                     }
                 }
@@ -634,7 +668,7 @@ impl<'a> EquilibriumSolver<'a> {
     /// The end of the way to the output time t by a law that has no value right after it, or that grows there without
     /// bound; `stop` is the end as the loads show it.
     fn undefined_law(&self, one: &Stepper<'_>, stop: &Stop, t: f64) -> Option<Box<Stop>> {
-        let from = self.path.last()?.time;
+        let from = self.reported.as_ref()?.0;
         if matches!(stop.kind, StopKind::Locked { .. }) {
             return None;
         }
@@ -836,7 +870,7 @@ impl<'a> EquilibriumSolver<'a> {
         rejection: Rejection,
     ) -> Box<Stop> {
         let failed_time = from.map_or(t, |from| from + (t - from) * done);
-        let begins = self.path.is_empty() && done == 0.0;
+        let begins = self.reported.is_none() && done == 0.0;
         if let Rejection::Locked(rejection) = rejection {
             let kind = advance::stop_at_rest(one, t, rejection).kind;
             return self.stop_as(one, kind, failed_time);
@@ -863,15 +897,15 @@ impl<'a> EquilibriumSolver<'a> {
                 (Rejection::NoConvergence | Rejection::Locked(_), _) | (_, None) => None,
             }
         };
-        let kind = named.unwrap_or(match self.path.is_empty() {
-            true => StopKind::LimitLoad { part: done },
-            false => StopKind::NoEquilibrium,
+        let kind = named.unwrap_or(match self.reported {
+            None => StopKind::LimitLoad { part: done },
+            Some(_) => StopKind::NoEquilibrium,
         });
         self.stop_as(one, kind, failed_time)
     }
 
     /// Values of the user's drivers at the equilibrium that was accepted last.
-    fn reported(&self, one: &Stepper<'_>) -> Vec<f64> {
+    fn user_drivers(&self, one: &Stepper<'_>) -> Vec<f64> {
         let own = self.user.drivers.iter().zip(&self.last.drivers);
         let mut values: Vec<f64> = own.map(|(driver, by)| driver.with_sense(*by)).collect();
         one.write_released(self.user, &mut values);
@@ -880,12 +914,12 @@ impl<'a> EquilibriumSolver<'a> {
 
     /// End of the run for this reason; the results up to the last output time are kept.
     fn stop_as(&self, one: &Stepper<'_>, kind: StopKind, failed_time: f64) -> Box<Stop> {
-        let at_output = self.path.last();
+        let at_output = self.reported.as_ref();
         Box::new(Stop {
             kind,
-            last_time: at_output.map(|passed| passed.time),
+            last_time: at_output.map(|(time, _)| *time),
             failed_time,
-            drivers: at_output.map_or_else(|| self.reported(one), |passed| passed.reported.clone()),
+            drivers: at_output.map_or_else(|| self.user_drivers(one), |(_, drivers)| drivers.clone()),
             block: None,
             pivot_ratio: 1.0,
             joints: Vec::new(),

@@ -412,7 +412,7 @@ fn outer_by_ackermann<T: Real>(i: T, track_by_wheelbase: T) -> T {
 }
 
 /// The clearance that an output is, if it is one.
-pub(super) fn clearance_of(model: &Model, output: OutputSource) -> Option<ClearanceId> {
+pub(crate) fn clearance_of(model: &Model, output: OutputSource) -> Option<ClearanceId> {
     let OutputSource::Measure(k) = output else { return None };
     if let MeasureKind::Clearance { of } = model.measures[k].kind { Some(of) } else { None }
 }

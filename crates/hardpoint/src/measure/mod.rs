@@ -19,7 +19,7 @@ mod wheel;
 
 pub(crate) use bodies::with_rates;
 pub(crate) use evaluate::{Context, MeasuredDesign, derivatives, evaluate};
-pub(crate) use formulas::{Instant, bodies_asked_for, is_formula};
+pub(crate) use formulas::{Instant, bodies_asked_for, clearance_of, is_formula};
 pub use program::MeasureFormulas;
 pub(crate) use program::{MeasureProgram, ProgramKey, dependences};
 pub(crate) use slope::{DriverPoses, Slopes, hindrance};

@@ -19,7 +19,7 @@ use crate::topology::Topology;
 
 use super::dexterity::dexterity;
 use super::step_values::{RecordedValue, RecordedValues};
-use super::wheel::{TravellingWheel, axle_roll_centre};
+use super::wheel::{TravellingWheel, axle_roll_centre, if_moving};
 use super::{Instant, StepValues, bodies_asked_for};
 
 /// Maximum number of combinations of a driver, a body and a variable for which slopes are recorded: each takes some
@@ -307,6 +307,15 @@ pub(crate) fn hindrance(design_map: &DesignMap<'_>) -> Option<&'static str> {
     (!fits).then_some("a slope is that of a formula that decides by values")
 }
 
+/// Sum of `w^2 + (v / L_0)^2` of the bodies along a driver, with the size `L_0` of the mechanism.
+fn motion_of<T: Real>(instant: &Instant<'_, Dual<T>>) -> T {
+    let per_size = T::constant(1.0 / instant.fixed.size);
+    instant.poses.iter().fold(T::zero(), |sum, pose| {
+        let (w, v) = (pose.split().1.w, pose.r.map(|x| x.d) * per_size);
+        sum + w.dot(w) + v.dot(v)
+    })
+}
+
 /// The same position as often as there are drivers, each time with what happens while that driver alone moves.
 struct DriverAlone<'m, T> {
     drivers: &'m [DriverId],
@@ -346,7 +355,12 @@ impl<T: Real> DriverAlone<'_, T> {
                     }
                     sum
                 };
-                along(*of) / along(*over)
+                let (of, rate) = (along(*of), along(*over));
+                let moving = [together, opposed].into_iter().flatten().flatten().map(|d| self.instant(*d));
+                let motion = moving.fold(motion_of(first), |sum, instant| sum + motion_of(instant));
+                // (L_0^n (w, v / L_0))^2 of a measure in m^n, with the size L_0 of the mechanism
+                let size = T::constant(first.fixed.size.powi(model.dimension(*over).length.into()));
+                of / if_moving(rate, motion * (size * size))
             }
             MeasureKind::Dexterity { points, drivers, value } => {
                 let jacobian = |d: usize, p: usize| {

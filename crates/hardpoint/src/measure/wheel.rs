@@ -232,7 +232,7 @@ impl<T: Real> TravellingWheel<T> {
     pub fn measure(&self, what: WheelMeasure, vehicle: &Vehicle) -> T {
         let wheel = &self.wheel;
         // W_z', C and C': the contact point wanders on the wheel, so C' is not the velocity of a point of the carrier.
-        let (rise, contact) = (wheel.centre.z.d, wheel.contact());
+        let (rise, contact) = (|| self.if_rising(wheel.centre.z.d), wheel.contact());
         let (c, path) = (contact.map(|x| x.v), contact.map(|x| x.d));
         let Twist { w, .. } = self.carrier;
         // Of the carrier's point that is at C now.
@@ -245,14 +245,14 @@ impl<T: Real> TravellingWheel<T> {
         }
         match what {
             // toe' / W_z',    camber' / W_z',    -W_x' / W_z',    s C_y' / W_z'
-            WheelMeasure::BumpSteer => toe(wheel.spin_axis, wheel.side).d / rise,
-            WheelMeasure::BumpCamber => camber(wheel.spin_axis).d / rise,
-            WheelMeasure::BumpRecession => -wheel.centre.x.d / rise,
-            WheelMeasure::BumpScrub => side * path.y / rise,
+            WheelMeasure::BumpSteer => toe(wheel.spin_axis, wheel.side).d / rise(),
+            WheelMeasure::BumpCamber => camber(wheel.spin_axis).d / rise(),
+            WheelMeasure::BumpRecession => -wheel.centre.x.d / rise(),
+            WheelMeasure::BumpScrub => side * path.y / rise(),
             // The line from C perpendicular to its path (C_y', C_z') meets y = 0 at C_y C_y' / C_z' above C; geometric
             // with v in place of C'.
-            WheelMeasure::RollCentreHeight => c.y * path.y / path.z,
-            WheelMeasure::RollCentreHeightGeometric => c.y * v.y / v.z,
+            WheelMeasure::RollCentreHeight => c.y * path.y / self.if_rising(path.z),
+            WheelMeasure::RollCentreHeightGeometric => c.y * v.y / self.if_rising(v.z),
             // v + w x (P - C) = 0 in y and z at P_x = C_x:  v_y - w_x (P_z - C_z) = 0,  v_z + w_x (P_y - C_y) = 0
             WheelMeasure::FrontCentreY => c.y - v.z / seen(w.x, w),
             WheelMeasure::FrontCentreZ => c.z + v.y / seen(w.x, w),
@@ -265,7 +265,7 @@ impl<T: Real> TravellingWheel<T> {
             // -l' / W_z'
             WheelMeasure::MotionRatio => {
                 let spring = wheel.spring.expect("a motion ratio is of a wheel that has a spring");
-                -(spring.d / rise)
+                -(spring.d / rise())
             }
             // s w / abs(w) of a rising wheel
             WheelMeasure::InstantAxisX => self.about(w.x),
@@ -313,6 +313,12 @@ impl<T: Real> TravellingWheel<T> {
 }
 
 impl<T: Real> TravellingWheel<T> {
+    /// The rate of a height at the wheel, for division; NaN if the driver does not lift the wheel.
+    fn if_rising(&self, rate: T) -> T {
+        let (v, w) = (self.wheel.centre.map(|x| x.d), self.carrier.w * self.wheel.radius.v);
+        if_moving(rate, v.dot(v) + w.dot(w))
+    }
+
     /// A component of the unit vector along the axis that the carrier turns about as the wheel rises: of a right wheel
     /// the opposite, so that both sides are images of each other. It goes through zero with the component, and never
     /// turns around on the way.
@@ -336,8 +342,8 @@ impl<T: Real> TravellingWheel<T> {
             | WheelRequirement::Steer => self.drive,
         };
         match reacted {
-            TorqueReaction::Outboard => v.x / v.z,
-            TorqueReaction::Inboard => self.wheel.centre.x.d / self.wheel.centre.z.d,
+            TorqueReaction::Outboard => v.x / self.if_rising(v.z),
+            TorqueReaction::Inboard => self.wheel.centre.x.d / self.if_rising(self.wheel.centre.z.d),
         }
     }
 
@@ -372,6 +378,16 @@ fn seen<T: Real>(component: T, turn: Vec3<T>) -> T {
     } else {
         T::constant(f64::NAN)
     }
+}
+
+/// Largest rate of a measure along a driver, relative to the motion of the bodies, that is round-off: ten times the
+/// relative error of a position.
+const STILL: f64 = 1e-11;
+
+/// A rate along a driver, for division; NaN if it is round-off beside the motion with this square.
+pub(super) fn if_moving<T: Real>(rate: T, motion: T) -> T {
+    let moves = (rate * rate).exceeds(motion * T::constant(STILL * STILL));
+    if moves { rate } else { T::constant(f64::NAN) }
 }
 
 /// Weight of a wheel's rise per rearward travel: its end's share of the force times wheelbase over height of the centre

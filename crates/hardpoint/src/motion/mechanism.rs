@@ -6,8 +6,10 @@
 use crate::joint::{Freedom, Quantity};
 use crate::linalg::{FullPivot, LARGEST_DENSE};
 use crate::model::{Contact, Driver, DriverId, Model};
-use crate::space::Quat;
-use crate::topology::{BlockId, RowId, SetBy, Topology};
+use crate::space::{Angles, Quat};
+use crate::topology::{
+    BlockId, CoordinateId, Link, LinkId, LoopLink, RowId, RowTerm, SetBy, Topology, TreeRow,
+};
 
 use super::kinematics::{PositionFailure, Residuals, State, factors_of};
 use super::parts::PlanGeometry;
@@ -368,18 +370,92 @@ impl<'m> Mechanism<'m> {
         Ok(())
     }
 
+    /// Rows of all constraints at the accepted position, with the entries of every coordinate of the tree.
+    pub fn accepted_rows(&mut self) -> Vec<TreeRow> {
+        self.restore();
+        self.state.gap_left = [0.0; 2];
+        self.state.stand_with_factors(&self.topology, &self.parts, &self.saved.drivers);
+        let (topology, s) = (&self.topology, &self.state);
+        let entry = |scale: f64, LoopLink { link, side }: LoopLink, row: RowId| {
+            let link = &topology[link];
+            link.coordinates().enumerate().map(move |(k, c)| {
+                // (6), dimensionless: row and coordinate divided by their units
+                let entry = s.l[0][row.0].on(s.x[0][c.0]) * side * scale * topology[c].unit;
+                (link.child, k, entry)
+            })
+        };
+        let rows = RowId::each(&topology.rows).filter(|(_, place)| !place.is_term);
+        rows.map(|(r, place)| {
+            let terms = topology.parts_of_row(r);
+            let of_term = |RowTerm { row, factor }: RowTerm| {
+                let scale = factor / place.unit;
+                topology.closure_of(row).links.iter().flat_map(move |around| entry(scale, *around, row))
+            };
+            terms.flat_map(of_term).collect()
+        })
+        .collect()
+    }
+
+    /// Takes over the accepted position of the same mechanism with other unknown coordinates, where its state is, and
+    /// solves it.
+    pub fn stand_at(&mut self, other: &Mechanism<'_>) -> Result<(), StepRejection> {
+        let (topology, parts, saved) = (&self.topology, &self.parts, &other.saved);
+        for (k, link) in LinkId::each(&topology.links) {
+            let before = other.topology.links.iter().find(|before| before.child == link.child);
+            let freedoms = |link: &Link| link.steps.iter().map(|step| step.freedom).collect::<Vec<_>>();
+            match before.filter(|before| freedoms(before) == freedoms(link)) {
+                Some(before) => {
+                    for (c, from) in link.coordinates().zip(before.coordinates()) {
+                        (self.state.q[c.0], self.state.balls[c.0]) = (saved.q[from.0], saved.balls[from.0]);
+                    }
+                }
+                // A body that one plan places by a ball and the other by three turns, from ground.
+                None => {
+                    // J(q) = (X_p M_p)^-1 X_c M_c                                                               (4)
+                    let marker = parts.child_from_marker[k.0].inverse();
+                    let place = parts.parent_marker[k.0].inverse().compose(other.state.pose[link.child.0]);
+                    let place = place.compose(marker);
+                    let (turns, slides) = (Angles::Cardan.of(place.rot), place.r.to_array());
+                    for step in &link.steps {
+                        let c = step.first.0;
+                        match step.freedom {
+                            Freedom::Slide(axis) => self.state.q[c] = step.sign * slides[axis],
+                            Freedom::Turn(axis) => self.state.q[c] = step.sign * turns[axis],
+                            Freedom::Ball => self.state.balls[c] = Quat::from_rotation(place.rot),
+                        }
+                    }
+                }
+            }
+        }
+        self.state.contacts.clone_from(&saved.contacts);
+        for &r in &topology.coupler_terms {
+            self.state.near[r.0] = saved.coupled[r.0][0];
+        }
+        // Drivers of cut joints are the same ones in both.
+        for (to, from) in self.drivers.iter_mut().zip(&saved.drivers) {
+            *to = [from[0], 0.0, 0.0];
+        }
+        for (c, d) in topology.driven_coordinates() {
+            self.drivers[d.0] = [self.state.q[c.0], 0.0, 0.0];
+        }
+        self.state.gap_left = [0.0; 2];
+        self.solve_within(f64::INFINITY)?;
+        self.settle_branch();
+        self.examine_position()
+    }
+
     /// Replaces the factors of a block after a change of its rows, whose entries are elsewhere.
     pub fn renew_factors(&mut self, b: BlockId) {
         let block = &self.topology[b];
         self.state.factors[b.0] = factors_of(&self.topology, block, LARGEST_DENSE);
     }
 
-    /// Values of the tree coordinates; 0 for those of balls.
-    pub fn coordinates(&self) -> impl Iterator<Item = f64> + '_ {
+    /// Values of these coordinates of the tree; 0 for those of balls.
+    pub fn coordinates(&self, of: &[CoordinateId]) -> impl Iterator<Item = f64> {
         for step in self.topology.links.iter().flat_map(|l| &l.steps) {
             assert!(step.freedom != Freedom::Ball || self.state.q[step.first.0] == 0.0);
         }
-        (0..self.state.q.len()).map(|c| self.state.q[c])
+        of.iter().map(|c| self.state.q[c.0])
     }
 }
 

@@ -1,7 +1,7 @@
 //! Solver of one design on its path: the mechanism, and what decides and records its steps.
 
-use crate::model::{DriverId, Model};
-use crate::topology::Topology;
+use crate::model::{DriverId, JointId, Model};
+use crate::topology::{ClosureId, Topology};
 
 use super::crossing::Crossing;
 use super::gap::Assembly;
@@ -212,17 +212,52 @@ impl<'m> Stepper<'m> {
         })
     }
 
+    /// Takes over the accepted position at rest of another stepper, whose mechanism is the same but for its unknown
+    /// coordinates, with all that it knows of the path up to there.
+    pub fn continue_from(&mut self, other: &Stepper<'_>) -> Result<(), StepRejection> {
+        self.mechanism.stand_at(&other.mechanism)?;
+        self.save(other.mechanism.saved.time);
+        if let (Some(turns), Some(before)) = (&mut self.turns, &other.turns) {
+            turns.ahead.copy_from_slice(&before.values);
+            turns.accept_at_rest(&self.mechanism.state);
+        }
+        self.effort = other.effort;
+        Ok(())
+    }
+
+    /// Least pivot ratio of all blocks at the accepted position.
+    pub fn least_pivot_ratio(&self) -> f64 {
+        self.mechanism.saved.pivots.iter().fold(1.0, |least, (ratio, _)| f64::min(least, *ratio))
+    }
+
+    /// Joints of the block whose position was accepted nearest to a singular one.
+    pub fn joints_nearest_to_singular(&self) -> Vec<JointId> {
+        let Mechanism { topology, saved, .. } = &self.mechanism;
+        let blocks = topology.block_ids();
+        let least = blocks.min_by(|a, b| saved.pivots[a.0].0.total_cmp(&saved.pivots[b.0].0));
+        least.map_or_else(Vec::new, |b| topology.joints_of_block(b))
+    }
+
     /// Writes the values of the released drivers of a user's model at the accepted position.
     pub fn write_released(&self, model: &Model, values: &mut [f64]) {
-        let Mechanism { model: solved, topology, saved, .. } = &self.mechanism;
+        let Mechanism { model: solved, topology, saved, state, .. } = &self.mechanism;
         for d in model.equilibrium.iter().flat_map(|equilibrium| &equilibrium.released) {
             let driver = &model.drivers[d.0];
             // Its coordinate, which another driver may determine in the model that is solved.
             let freedom = solved.joints[driver.joint.0].kind.coordinates[driver.coordinate].freedom;
             let link = topology.links.iter().find(|link| link.joint == Some(driver.joint));
-            let change = match (freedom, link) {
-                (Some(freedom), Some(link)) => saved.q[link.coordinate_of(freedom).0],
-                _ => saved.drivers[d.0][0],
+            let closure = ClosureId::each(&topology.closures)
+                .find(|(_, c)| c.joint == driver.joint && c.coupler.is_none() && c.driver.is_none());
+            let change = match (freedom, link, closure) {
+                (Some(freedom), Some(link), _) => saved.q[link.coordinate_of(freedom).0],
+                (_, _, Some((c, _))) => {
+                    // That of a cut joint, within a turn.
+                    let row = model.driven(driver).row;
+                    let [now, at_first] =
+                        [state.ends[c.0], model.ends(driver.joint)].map(|ends| row.value(&ends, 0.0));
+                    now - at_first
+                }
+                (_, _, None) => saved.drivers[d.0][0],
             };
             values[d.0] = driver.with_sense(change);
         }

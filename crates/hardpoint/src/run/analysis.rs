@@ -5,11 +5,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 
 use crate::design::{DesignMap, DesignVelocity};
-use crate::equilibrium::{Released, release};
+use crate::equilibrium::{OpenPosition, Released, release, release_at};
 use crate::law::Law;
 use crate::load::{self, RecordedLoads};
 use crate::measure::{self, MeasureFormulas, MeasureResults, Slopes, StepValues};
-use crate::model::{BodyId, DriverId, JointLimit, MeasureKind, Model, SharedModel, StartPlacement};
+use crate::model::{BodyId, Driver, DriverId, JointLimit, MeasureKind, Model, SharedModel, StartPlacement};
 use crate::motion::advance;
 use crate::motion::execution::{Cache, Runnable};
 use crate::motion::parts::PlanGeometry;
@@ -19,13 +19,13 @@ use crate::motion::stepper::Stepper;
 use crate::motion::{BodyState, DrivenStep, Execution, Motion, StepMethod, Stop, StopKind};
 use crate::number::record as recording;
 use crate::sensitivity::{Admissibility, JointDefect, admissibility_at_design, along, record_derivatives};
-use crate::topology::{Formulation, Topology, TopologyError};
+use crate::topology::{Formulation, Topology, TopologyError, TreeRow};
 
 use super::needed::NeededResults;
 use super::request::Run;
 use super::sink::Sink;
 use super::solution::{Solution, StreamSummary};
-use super::walk::{PreparedDesign, Scope, Walk};
+use super::walk::{Continuations, PreparedDesign, Scope, Walk};
 
 /// Reason why steps at equilibrium are solved by the kernel.
 const AT_EQUILIBRIUM: &str = "its elastic joints are in equilibrium";
@@ -37,6 +37,15 @@ struct OpenModel {
     openings: Vec<DriverId>,
     /// Per opening: the force that it needs as a driver.
     kinds: Vec<MeasureKind>,
+    /// The model with every opening driven, of which the constraints determine some.
+    every_opening: Model,
+}
+
+impl OpenModel {
+    fn new(user: &Model, openings: Vec<DriverId>, every_opening: Model) -> Self {
+        let kinds = openings.iter().map(|d| MeasureKind::DriverForce { driver: *d }).collect();
+        Self { user: user.clone(), openings, kinds, every_opening }
+    }
 }
 
 /// A model with its solution plan, ready to be run any number of times.
@@ -95,9 +104,8 @@ impl<'m> Analysis<'m> {
     pub fn with(model: impl Into<SharedModel<'m>>, formulation: Formulation) -> Result<Self, TopologyError> {
         let model = model.into();
         let (topology, design_map, equilibrium) = if model.equilibrium.is_some() {
-            let (Released { model: open, openings }, topology) = release(&model, formulation)?;
-            let kinds = openings.iter().map(|d| MeasureKind::DriverForce { driver: *d }).collect();
-            let equilibrium = OpenModel { user: Model::clone(&model), openings, kinds };
+            let (Released { model: open, openings, every_opening }, topology) = release(&model, formulation)?;
+            let equilibrium = OpenModel::new(&model, openings, every_opening);
             (topology, DesignMap::of(Arc::new(open)), Some(Arc::new(equilibrium)))
         } else {
             (Topology::of(&model, formulation)?, DesignMap::of(model), None)
@@ -147,6 +155,13 @@ impl<'m> Analysis<'m> {
     /// The openings of the solved model and their forces as measures, if its elastic joints are open.
     pub(super) fn openings(&self) -> Option<(&[DriverId], &[MeasureKind])> {
         self.equilibrium.as_ref().map(|open| (&open.openings[..], &open.kinds[..]))
+    }
+
+    /// True if drivers and openings of the solved model are the same as those of another analysis of it.
+    pub(super) fn drives_the_same(&self, other: &Analysis<'_>) -> bool {
+        let [own, others] = [self.solved_model(), other.solved_model()].map(|model| &model.drivers);
+        let same = |(a, b): (&Driver, &Driver)| (a.joint, a.coordinate) == (b.joint, b.coordinate);
+        own.len() == others.len() && own.iter().zip(others).all(same)
     }
 
     /// The plan.
@@ -268,6 +283,7 @@ impl<'m> Analysis<'m> {
             scope,
             values,
             needs: None,
+            continued: Continuations::default(),
         }
     }
 
@@ -294,9 +310,8 @@ impl<'m> Analysis<'m> {
     /// Analysis of a model that differs only in its output times, metrics and stops.
     fn with_model(&self, changed: impl Fn(&Model) -> Model) -> Analysis<'static> {
         let equilibrium = self.equilibrium.as_ref().map(|open| {
-            let OpenModel { user, openings, kinds } = &**open;
-            let (openings, kinds) = (openings.clone(), kinds.clone());
-            Arc::new(OpenModel { user: changed(user), openings, kinds })
+            let OpenModel { user, openings, every_opening, .. } = &**open;
+            Arc::new(OpenModel::new(&changed(user), openings.clone(), changed(every_opening)))
         });
         Analysis {
             topology: self.topology.clone(),
@@ -309,6 +324,30 @@ impl<'m> Analysis<'m> {
             kernel: self.kernel.clone(),
             end: self.end.clone(),
         }
+    }
+
+    /// Examines a position with these rows at an equilibrium; `None` without one. Returns whether the constraints are
+    /// singular there, and the analysis of the same model with the openings that they leave there, if they are others.
+    pub(super) fn examine_openings(&self, rows: &[TreeRow]) -> Option<(bool, Option<Analysis<'static>>)> {
+        let OpenModel { user, every_opening, .. } = &**self.equilibrium.as_ref()?;
+        let before = (every_opening, self.solved_model());
+        let OpenPosition { is_singular, other } = release_at(user, before, rows, self.topology.formulation);
+        let with = |(released, topology): (Released, Topology)| {
+            let Released { model: open, openings, every_opening } = released;
+            let start = start::start_coordinates(&open, &topology);
+            Analysis {
+                topology: Topology { start, ..topology },
+                design_map: DesignMap::of(Arc::new(open)),
+                equilibrium: Some(Arc::new(OpenModel::new(user, openings, every_opening))),
+                opens: self.opens.clone(),
+                between: Arc::default(),
+                programs: self.programs.clone(),
+                formulas: Arc::default(),
+                kernel: Arc::default(),
+                end: self.end.clone(),
+            }
+        };
+        Some((is_singular, other.map(with)))
     }
 
     /// Returns the places, laws and design velocities of the model as functions of the design.

@@ -11,12 +11,12 @@ use std::sync::Arc;
 
 use crate::law::Law;
 use crate::linalg::{hermite, segment_at};
-use crate::model::{Metric, Model, Reduction};
+use crate::model::{Metric, Model, OutputSource, Reduction};
 use crate::motion::StopKind;
 use crate::motion::mechanism::driver_units;
 
 use super::analysis::Analysis;
-use super::metric::{unresolved_times, window_times};
+use super::metric::{is_among, unresolved_times, window_times};
 use super::needed::{MetricUse, NeededResults};
 use super::request::Progress;
 use super::solution::Solution;
@@ -112,6 +112,7 @@ impl Analysis<'_> {
         solution: &mut Solution,
     ) {
         solution.between = None;
+        solution.located.clear();
         let model = self.model();
         if !design.scope.measures
             || solution.stop.is_some()
@@ -121,6 +122,7 @@ impl Analysis<'_> {
         }
         let mut times = self.times_between().to_vec();
         let mut found: Option<Solution> = None;
+        let mut located: Option<Vec<OutputSource>> = None;
         let is_whole = solution.motion.len() == model.times.len();
         if !is_whole && model.times.len() > Footprint::of(model, true).rows(BYTES) {
             return;
@@ -131,7 +133,8 @@ impl Analysis<'_> {
         // All output times have been reported as solved before.
         let mut go_on =
             |_: Progress| progress(Progress { done: model.times.len() - 1, total: model.times.len() });
-        for _ in 0..MOST_PASSES {
+        let mut passes = 0;
+        loop {
             if times.len() > model.times.len() || !is_whole {
                 let [start, end] = [model.times[0], model.times[model.times.len() - 1]];
                 times.retain(|t| start <= *t && *t <= end);
@@ -147,15 +150,27 @@ impl Analysis<'_> {
                 found = Some(next);
             }
             let now = found.as_ref().unwrap_or(solution);
+            let mut add = Vec::new();
+            if located.is_none() {
+                let (measures, minima) = self.locate_minima(&design.values, now);
+                add = minima;
+                located = Some(measures);
+            }
+            // Minima have a pass of their own.
+            passes += usize::from(add.is_empty());
+            let is_located = |m: &&Metric| located.as_ref().is_some_and(|located| is_among(located, m));
             let metrics = model.metrics.iter().filter(|m| is_between_outputs(m, &model.times));
-            let add: Vec<f64> = metrics
-                .flat_map(|m| unresolved_times(now, m, found.is_some() || is_exact(model, m)))
-                .collect();
-            if add.is_empty() {
+            add.extend(
+                metrics
+                    .filter(|m| !is_located(m))
+                    .flat_map(|m| unresolved_times(now, m, found.is_some() || is_exact(model, m))),
+            );
+            if add.is_empty() || passes == MOST_PASSES {
                 break;
             }
             times.extend(add);
         }
+        solution.located = located.unwrap_or_default();
         if design.scope.sensitivities
             && let Some(values) = &found
         {
@@ -166,12 +181,13 @@ impl Analysis<'_> {
             }
             found = Some(all);
         }
-        solution.between = found.map(|found| Arc::new(self.with_unlocated_times(found)));
+        let finer = found.map(|found| self.with_unlocated_times(found, &solution.located));
+        solution.between = finer.map(Arc::new);
     }
 
     /// Records which times of the motion at more times depend on the laws of the nominal design alone.
-    fn with_unlocated_times(&self, finer: Solution) -> Solution {
-        Solution { unlocated: self.times_between().to_vec(), ..finer }
+    fn with_unlocated_times(&self, finer: Solution, located: &[OutputSource]) -> Solution {
+        Solution { unlocated: self.times_between().to_vec(), located: located.to_vec(), ..finer }
     }
 
     /// Ends a solution where the same motion at finer times ends: these follow it more closely.
@@ -251,7 +267,8 @@ impl Analysis<'_> {
                 let mut found = Solution::default();
                 finer.walk(&design, between.motion.len(), &mut go_on, &mut found, &mut |_, _| ());
                 solution.stop = found.stop.clone();
-                solution.between = Some(Arc::new(self.with_unlocated_times(found)));
+                let finer = self.with_unlocated_times(found, &solution.located);
+                solution.between = Some(Arc::new(finer));
             }
         }
     }

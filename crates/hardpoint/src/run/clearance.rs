@@ -5,13 +5,18 @@
 
 use crate::clearance::{ChangingBodies, MovingBodies, PlacedShapes};
 use crate::design::{BodyFixed, ShapeGeometry};
-use crate::model::{BodyId, Clearance, ClearanceId, Model, PointId, Shape, ShapeId, ShapeKind, ShapePair};
+use crate::measure::clearance_of;
+use crate::model::{
+    BodyId, Clearance, ClearanceId, Model, OutputSource, PointId, Reduction, Shape, ShapeId, ShapeKind,
+    ShapePair,
+};
 use crate::motion::{BodyState, Motion, Stop, StopKind};
 use crate::number::{Dual, Jet, Rates};
 use crate::space::Vec3;
 
 use super::curve::SampledCurve;
 use super::joint_limits::MovingEnd;
+use super::metric::metric_number;
 use super::{Analysis, Run, Solution};
 
 /// A minimum or contact is located if a step of Newton's method is below this fraction of the motion: positions are
@@ -237,33 +242,8 @@ impl Analysis<'_> {
         let model = self.model();
         let pairs = model.shape_pairs();
         let mut curves = Curves::new(model, &pairs);
-        let mut located = Located::default();
-        let mut plateaus = None;
-        let mut times = self.times_within();
-        let mut follows_all = model.equilibrium.is_some();
-        let mut first_stop = None;
-        for pass in 0..MOST_PASSES {
-            let Solution { motion, stop, .. } = self.motion_at(&times, design, false);
-            if pass == 0 {
-                first_stop.clone_from(&stop);
-            }
-            follows_all |= pass > 0 && motion.len() < times.len();
-            curves.add(self, design, &motion);
-            let plateaus = plateaus.get_or_insert_with(|| curves.plateaus());
-            let is_ended = self.is_ended();
-            located = curves.locate(plateaus, &curves.overlaps(), is_ended);
-            // A motion that ends early is followed up to its end.
-            let end = stop.and_then(|stop| stop.last_time).filter(|_| pass == 0);
-            located.add.extend(end.filter(|end| curves.times.last().is_some_and(|last| last < end)));
-            if located.add.is_empty() || is_ended {
-                break;
-            }
-            // Further times are solved by themselves from the first one on; beside all others only at equilibria, which
-            // follow the times, and after a motion that did not get there.
-            let followed = if follows_all { curves.times.len() } else { 1 };
-            times = curves.times.iter().take(followed).chain(&located.add).copied().collect();
-            sort_times(&mut times);
-        }
+        let (located, first_stop) =
+            self.locate_events(design, self.motion_at(&self.times_within(), design, false), &mut curves);
         let of_events = located.events.iter().flat_map(|e| [e.time].into_iter().chain(e.kink));
         let mut events: Vec<f64> = of_events.chain(model.times.iter().copied()).collect();
         sort_times(&mut events);
@@ -286,6 +266,87 @@ impl Analysis<'_> {
             solution.stop = Some(self.stopped(StopKind::Interrupted, solved));
         }
         self.results(design, &curves, &located, &solution)
+    }
+
+    /// Locates the minima and contacts of pairs from a first solution of the motion of a design on. Also returns the
+    /// reason why the first one ended early, if it did.
+    fn locate_events(
+        &self,
+        design: &[f64],
+        first: Solution,
+        curves: &mut Curves<'_>,
+    ) -> (Located, Option<Stop>) {
+        let first_stop = first.stop.clone();
+        let mut end = first_stop.as_ref().and_then(|stop| stop.last_time);
+        let mut follows_all = self.model().equilibrium.is_some();
+        let mut plateaus = Vec::new();
+        let mut motion = first.motion;
+        let mut passes = 0;
+        loop {
+            passes += 1;
+            let was_same: Vec<bool> = (0..curves.pairs.len()).map(|p| curves.is_same(p)).collect();
+            curves.add(self, design, &motion);
+            plateaus.resize_with(curves.pairs.len(), Vec::new);
+            // Later times are denser beside minima, where equal distances are those on both sides.
+            let first_seen = was_same.iter().zip(&mut plateaus).enumerate().filter(|(_, (same, _))| **same);
+            first_seen.for_each(|(p, (_, plateaus))| *plateaus = curves.plateaus(p));
+            let is_last = self.is_ended() || passes == MOST_PASSES;
+            let mut located = curves.locate(&plateaus, &curves.overlaps(), is_last);
+            // A motion that ends early is followed up to its end.
+            let end = end.take().filter(|end| curves.times.last().is_some_and(|last| last < end));
+            located.add.extend(end);
+            if located.add.is_empty() || is_last {
+                return (located, first_stop);
+            }
+            // Further times are solved by themselves from the first one on; beside all others only at equilibria, which
+            // follow the times, and after a motion that did not get there.
+            let followed = if follows_all { curves.times.len() } else { 1 };
+            let mut times: Vec<f64> =
+                curves.times.iter().take(followed).chain(&located.add).copied().collect();
+            sort_times(&mut times);
+            motion = self.motion_at(&times, design, false).motion;
+            follows_all |= motion.len() < times.len();
+        }
+    }
+
+    /// Locates the minima of clearances whose least value is a metric, from a solution of a design on, unless its
+    /// distances and rates show all of them. Returns these measures with the times of their minima, and with times
+    /// between which their bodies do not turn far.
+    pub(super) fn locate_minima(&self, design: &[f64], solution: &Solution) -> (Vec<OutputSource>, Vec<f64>) {
+        let model = self.model();
+        let posed = PosedMotion::of(self, design, &solution.motion);
+        let (mut measures, mut pairs, mut times) = (Vec::new(), Vec::new(), Vec::new());
+        for metric in &model.metrics {
+            let Some(of) = clearance_of(model, metric.of) else { continue };
+            if metric.take != Reduction::Least || metric.window.is_some() || measures.contains(&metric.of) {
+                continue;
+            }
+            let least = metric_number(metric, solution).unwrap_or(f64::NEG_INFINITY);
+            let own = || model.clearances[of.0].pairs.iter().map(|pair| pair.shapes);
+            let turns: Vec<f64> = own().flat_map(|shapes| posed.turning_times(shapes)).collect();
+            // Where cores meet, the distance may have no rates, or minima at which they jump.
+            let is_hidden =
+                |shapes: [ShapeId; 2]| has_surface(model, shapes) || least <= -posed.round(shapes);
+            if model.equilibrium.is_some() || !turns.is_empty() || own().any(is_hidden) {
+                measures.push(metric.of);
+                times.extend(turns);
+                pairs.extend(own());
+            }
+        }
+        if pairs.is_empty() {
+            return (measures, times);
+        }
+        let mut curves = Curves::new(model, &pairs);
+        let first = Solution { motion: solution.motion.clone(), ..Solution::default() };
+        let (located, _) = self.locate_events(design, first, &mut curves);
+        let minima = located.events.iter().filter(|event| matches!(event.kind, EventKind::Minimum(_)));
+        times.extend(minima.map(|event| event.time));
+        sort_times(&mut times);
+        let known = &solution.motion.times;
+        let same = SAME_TIME * known.last().zip(known.first()).map_or(0.0, |(last, first)| last - first);
+        times.dedup_by(|a, b| *a - *b <= same);
+        times.retain(|t| !known.iter().any(|other| (t - other).abs() <= same));
+        (measures, times)
     }
 
     fn motion_at(&self, times: &[f64], design: &[f64], sensitivities: bool) -> Solution {
@@ -463,23 +524,79 @@ impl<'m> PosedMotion<'m> {
     /// has one pair of features at a time, and its rate is continuous.
     fn reach(&self, shapes: [ShapeId; 2], k: usize) -> Option<Reach> {
         let Self { model, motion, fixed } = self;
-        let is_concave =
-            |s: ShapeId| matches!(model.shapes[s.0].kind, ShapeKind::Mesh { .. } | ShapeKind::Ring { .. });
-        if !shapes.into_iter().any(is_concave) {
+        if !has_surface(model, shapes) {
             return None;
         }
-        let state = |s: ShapeId| {
-            let [body] = model.shapes[s.0].bodies(model)[..] else { return None };
-            Some(motion.at(k).body(body.0))
+        let carried = |s: ShapeId| {
+            let bodies = model.shapes[s.0].bodies(model);
+            bodies.into_iter().map(|body| motion.at(k).body(body.0)).collect::<Vec<BodyState>>()
         };
-        let (first, second) = (state(shapes[0])?, state(shapes[1])?);
         let placed = PlacedShapes { model, fixed, bodies: &MovingBodies(motion.at(k)) };
         let balls = shapes.map(|s| placed.ball(s));
         let (centre, radius) = if balls[0].1 <= balls[1].1 { balls[0] } else { balls[1] };
-        let at = |body: &BodyState| body.v + body.omega.cross(centre - body.r);
-        let speed = (at(&second) - at(&first)).norm() + (second.omega - first.omega).norm() * radius;
+        let at = |body: &BodyState, p: Vec3| body.v + body.omega.cross(p - body.r);
+        let [first, second] = shapes.map(carried);
+        let speed = match (&first[..], &second[..]) {
+            ([first], [second]) => {
+                let turning = (second.omega - first.omega).norm();
+                (at(second, centre) - at(first, centre)).norm() + turning * radius
+            }
+            ([rigid], _) | (_, [rigid]) => {
+                // A rod between two bodies: each of its points goes with the same fractions of its ends.
+                let between = if first.len() == 1 { shapes[1] } else { shapes[0] };
+                let (ShapeKind::Capsule { ends } | ShapeKind::Cylinder { ends, .. }) =
+                    &model.shapes[between.0].kind
+                else {
+                    return None;
+                };
+                let [p, q] = ends.map(|p| {
+                    let body = motion.at(k).body(model.points[p.0].body.0);
+                    let place = body.r + body.rotation * fixed.points[p.0].value();
+                    (place, at(&body, place) - at(rigid, place))
+                });
+                // Rims of a cylinder turn with its axis.
+                let turning = (q.1 - p.1).norm() / (q.0 - p.0).norm();
+                let rim = fixed.shapes[between.0].size.value().abs();
+                p.1.norm().max(q.1.norm()) + if rim > 0.0 { turning * rim } else { 0.0 }
+            }
+            (_, _) => return None,
+        };
         Some(Reach { speed, radius })
     }
+
+    /// Times between those of the motion, between which the bodies of two shapes do not turn far.
+    fn turning_times(&self, shapes: [ShapeId; 2]) -> Vec<f64> {
+        let bodies = self.carriers(shapes);
+        let speeds: Vec<f64> = (0..self.motion.len()).map(|k| self.turning(&bodies, k)).collect();
+        turning_times(&self.motion.times, &speeds)
+    }
+
+    /// Sum of the radii around the cores of two shapes, m.
+    fn round(&self, shapes: [ShapeId; 2]) -> f64 {
+        shapes.iter().map(|s| self.fixed.shapes[s.0].round.value()).sum()
+    }
+
+    /// Bodies that carry two shapes.
+    fn carriers(&self, [a, b]: [ShapeId; 2]) -> Vec<BodyId> {
+        let of = |s: ShapeId| self.model.shapes[s.0].bodies(self.model);
+        of(a).into_iter().chain(of(b)).collect()
+    }
+
+    /// Angular speed of bodies relative to each other at time k, rad/s.
+    fn turning(&self, bodies: &[BodyId], k: usize) -> f64 {
+        let Some((first, others)) = bodies.split_first() else { return 0.0 };
+        let spin = |body: &BodyId| self.motion.at(k).body(body.0).omega;
+        let first = spin(first);
+        // Of two others at most the sum.
+        others.iter().map(|other| (spin(other) - first).norm()).sum()
+    }
+}
+
+/// True if one of two shapes is a surface or a ring, which may have several parts that are near the other shape.
+fn has_surface(model: &Model, shapes: [ShapeId; 2]) -> bool {
+    let is_concave =
+        |s: ShapeId| matches!(model.shapes[s.0].kind, ShapeKind::Mesh { .. } | ShapeKind::Ring { .. });
+    shapes.into_iter().any(is_concave)
 }
 
 /// Distances of all pairs at the times of a motion that were solved so far.
@@ -494,6 +611,8 @@ struct Curves<'m> {
     samples: Vec<Vec<ShapeDistance>>,
     /// The same; `None` for pairs whose distance has a continuous rate.
     reaches: Vec<Vec<Option<Reach>>>,
+    /// The same: angular speed of the bodies relative to each other, rad/s.
+    turning: Vec<Vec<f64>>,
 }
 
 /// Motion of two surfaces relative to each other at one time.
@@ -514,6 +633,7 @@ impl<'m> Curves<'m> {
             times: Vec::new(),
             samples: vec![Vec::new(); pairs.len()],
             reaches: vec![Vec::new(); pairs.len()],
+            turning: vec![Vec::new(); pairs.len()],
         }
     }
 
@@ -525,6 +645,7 @@ impl<'m> Curves<'m> {
         let mut known = 0;
         let until_ended = new.iter().take_while(|_| !analysis.is_ended()).inspect(|_| known += 1);
         let found = posed.distances(self.pairs, until_ended.copied());
+        let carriers: Vec<Vec<BodyId>> = self.pairs.iter().map(|shapes| posed.carriers(*shapes)).collect();
         for (n, k) in new.into_iter().take(known).enumerate() {
             let time = motion.times[k];
             let place = self.times.partition_point(|t| *t < time);
@@ -532,8 +653,15 @@ impl<'m> Curves<'m> {
             for (p, shapes) in self.pairs.iter().enumerate() {
                 self.samples[p].insert(place, found[p][n]);
                 self.reaches[p].insert(place, posed.reach(*shapes, k));
+                self.turning[p].insert(place, posed.turning(&carriers[p], k));
             }
         }
+    }
+
+    /// Times within intervals in which the bodies of a pair turn far relative to each other, however little the drivers
+    /// move there: a screw turns many times over a short way, and a gear faster than its driver.
+    fn turning(&self, p: usize) -> Vec<f64> {
+        turning_times(&self.times, &self.turning[p])
     }
 
     /// Times within intervals in which a pair may be nearer than at any time so far, or touch unseen, since other parts
@@ -565,19 +693,24 @@ impl<'m> Curves<'m> {
         add
     }
 
-    /// Parts of the motion in which the distance of a pair does not change, by pair: of a rod through a plate for
-    /// example, which is equally deep all the time. Rates there are those of either way out, and indicate nothing.
-    fn plateaus(&self) -> Vec<Vec<Plateau>> {
-        let of_pair = |samples: &Vec<ShapeDistance>| {
-            // Two equal distances may be those on both sides of a minimum, unless their rates are zero.
-            let is_still = |k: &usize| samples[*k].distance[1..] == [0.0; 2];
-            let is_long = |run: &[usize]| run.len() > 2 || run.len() == 2 && run.iter().all(is_still);
-            let is_deep = |run: &[usize]| run.iter().any(|k| samples[*k].is_deep());
-            let steps: Vec<usize> = (0..samples.len()).collect();
-            let runs = self.equal(samples, &steps).filter(|run| is_long(run) && !is_deep(run));
-            runs.map(|run| self.plateau(samples, run, None)).collect()
-        };
-        self.samples.iter().map(of_pair).collect()
+    /// Parts of the motion in which the distance of a pair does not change: of a rod through a plate for example, which
+    /// is equally deep all the time. Rates there are those of either way out, and indicate nothing.
+    fn plateaus(&self, p: usize) -> Vec<Plateau> {
+        let samples = &self.samples[p];
+        // Two equal distances may be those on both sides of a minimum, unless their rates are zero.
+        let is_still = |k: &usize| samples[*k].distance[1..] == [0.0; 2];
+        let is_long = |run: &[usize]| run.len() > 2 || run.len() == 2 && run.iter().all(is_still);
+        let is_deep = |run: &[usize]| run.iter().any(|k| samples[*k].is_deep());
+        let steps: Vec<usize> = (0..samples.len()).collect();
+        let runs = self.equal(samples, &steps).filter(|run| is_long(run) && !is_deep(run));
+        runs.map(|run| self.plateau(samples, run, None)).collect()
+    }
+
+    /// True if a pair has the same distance at all times so far.
+    fn is_same(&self, p: usize) -> bool {
+        let known = || self.samples[p].iter().map(|s| s.distance[0]);
+        let [low, high] = [known().fold(f64::INFINITY, f64::min), known().fold(f64::NEG_INFINITY, f64::max)];
+        high - low <= CONSTANT * self.size
     }
 
     /// Parts of the motion in which shapes overlap at a depth that is not known, by pair, as far as they are known: a
@@ -634,21 +767,20 @@ impl<'m> Curves<'m> {
         // A distance that is not known has no place in any order: no times are added to look for its minimum.
         let known = (0..=last).filter(|k| value(*k).is_finite());
         let Some(lowest) = known.reduce(|a, b| if value(b) < value(a) { b } else { a }) else { return };
-        let (low, high) = samples.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), s| {
-            (low.min(s.distance[0]), high.max(s.distance[0]))
-        });
         let mut events: Vec<Event> = Vec::new();
         let mut event = |time: f64, kind: EventKind| events.push(Event { pair: p, time, kink: None, kind });
-        if high - low <= CONSTANT * self.size {
-            located.constant[p] = true;
-            event(times[0], EventKind::Minimum(MinimumPlace::Start));
-            located.events.extend(events);
-            return;
-        }
         let is_known = |k: usize| samples[k].distance[1].is_finite();
         // Per interval: both of its ends have rates.
         let has_rates = |k: usize| is_known(k) && is_known(k + 1);
-        let mut add = Vec::new();
+        let mut add = self.turning(p);
+        add.extend(self.unseen(p, &|k| !has_rates(k)));
+        if self.is_same(p) {
+            located.constant[p] = true;
+            event(times[0], EventKind::Minimum(MinimumPlace::Start));
+            located.events.extend(events);
+            located.add.extend(add);
+            return;
+        }
         let level = |k: usize| {
             let same = |x: f64, plateau: &Plateau| (x - plateau.value).abs() <= FLAT * self.size;
             plateaus.iter().find(|plateau| {
@@ -739,7 +871,8 @@ impl<'m> Curves<'m> {
             let steps: Vec<usize> = (0..=last).collect();
             for run in self.equal(samples, &steps) {
                 let (first, end) = (run[0], run[run.len() - 1]);
-                if first == 0 || end == last || is_level(first - 1) || is_level(end) {
+                // A minimum over a part of the motion is that of its plateau.
+                if first == 0 || end == last || (first - 1..=end).any(is_level) {
                     continue;
                 }
                 let (before, after) = (first - 1, end + 1);
@@ -781,7 +914,6 @@ impl<'m> Curves<'m> {
                 }
             }
         }
-        add.extend(self.unseen(p, &|k| !has_rates(k) || is_level(k)));
         // Contacts: from a time at which the sign changes, Newton's method or the polynomial.
         for k in 0..last {
             let [a, b] = [value(k), value(k + 1)];
@@ -815,7 +947,8 @@ impl<'m> Curves<'m> {
                 if (polynomial(middle) > 0.0) == (a > 0.0) { low = middle } else { high = middle }
             }
             add.push(0.5 * (low + high));
-            if times[k + 1] - times[k] > SAME_TIME * span {
+            // Without rates, the line through two distances meets zero on one side of a contact only.
+            if times[k + 1] - times[k] > SAME_TIME * span || !has_rates(k) {
                 add.push(0.5 * (times[k] + times[k + 1]));
             }
         }
@@ -837,6 +970,20 @@ impl<'m> Curves<'m> {
         located.events.extend(events);
         located.add.extend(add);
     }
+}
+
+/// Times within intervals in which a body with these speeds at their ends, rad/s, turns far.
+fn turning_times(times: &[f64], speeds: &[f64]) -> Vec<f64> {
+    let angle = |k: usize| (times[k + 1] - times[k]) * speeds[k].max(speeds[k + 1]);
+    let intervals = 0..times.len().saturating_sub(1);
+    let most = FAR.max(intervals.clone().map(angle).sum::<f64>() / MOST_TURNING);
+    let far = intervals.filter(|k| angle(*k) > most);
+    let within = |k: usize| {
+        let parts = (angle(k) / most).ceil();
+        let at = move |n: u32| times[k] + (times[k + 1] - times[k]) * f64::from(n) / parts;
+        (1..parts as u32).map(at)
+    };
+    far.flat_map(within).collect()
 }
 
 /// Rise of values above a first one until one of them is lower; infinite if none is.
@@ -872,6 +1019,11 @@ const CONSTANT: f64 = 1e-10;
 /// Distances that differ by less than this fraction of the mechanism's size are the same: round-off of positions.
 const FLAT: f64 = 4e-12;
 
+/// Angle by which two bodies may turn relative to each other between two times, rad: the error of a polynomial of
+/// degree five for a sine is `0.5^6 / 46080 = 3e-7`, which hides no minimum.
+const FAR: f64 = 0.5;
+/// Maximum number of times that are added for bodies that turn far.
+const MOST_TURNING: f64 = 20_000.0;
 /// Allowance for speeds between two times that are above those at both.
 const SPEEDS: f64 = 1.1;
 /// Way of two surfaces between two times, as a part of the smaller one, in which no other parts of them pass each other
@@ -949,9 +1101,10 @@ mod tests {
             at_rest: false,
             times: samples.iter().map(|at| at.time).collect(),
             reaches: vec![vec![None; samples.len()]],
+            turning: vec![vec![0.0; samples.len()]],
             samples: vec![samples],
         };
-        let located = curves.locate(&curves.plateaus(), &curves.overlaps(), false);
+        let located = curves.locate(&[curves.plateaus(0)], &curves.overlaps(), false);
         assert_eq!(located.add, Vec::<f64>::new());
         let minima: Vec<f64> = located.events.iter().map(|event| event.time).collect();
         assert_eq!(minima, [0.7]);

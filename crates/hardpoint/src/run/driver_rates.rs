@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use super::sink::NullSink;
-use super::walk::SolvedSteps;
+use super::walk::{PerPlan, Plan, SolvedSteps};
 use super::{Analysis, Walk};
 use crate::measure::{Instant, Output, bodies_asked_for, outputs};
 use crate::model::{DriverId, GROUND};
@@ -43,9 +43,11 @@ impl Analysis<'_> {
         let model = self.model();
         let design = self.design(&[]);
         let ways: Vec<PairDirection> = drivers.iter().map(|d| PairDirection::Driver(*d)).collect();
-        let openings = self.openings().map_or(&[][..], |(openings, _)| openings);
-        let mut seconds =
-            Seconds::new(self.design_map(), self.topology(), &design.values, (&ways, openings), &[]);
+        let mut workspaces = PerPlan::new(self, &design, |Plan { analysis, design, .. }: Plan<'_>| {
+            let openings = analysis.openings().map_or(&[][..], |(openings, _)| openings);
+            let (map, topology) = (analysis.design_map(), analysis.topology());
+            Seconds::new(map, topology, &design.values, (&ways, openings), &[])
+        });
         let values: Vec<_> = design.values.iter().map(|v| Dual::constant(Dual::constant(*v))).collect();
         let fixed = self.design_map().fixed(&values);
         let bodies: Vec<usize> = bodies_asked_for(model).into_iter().filter(|b| *b != GROUND.0).collect();
@@ -56,7 +58,10 @@ impl Analysis<'_> {
         let mut times = model.times.iter();
         let go_on = &mut |_| ControlFlow::Continue(());
         found.stop = walk.all(&mut NullSink, go_on, |_, solved, _, _| {
-            let (Some(&t), SolvedSteps::One(one, _, equilibrium)) = (times.next(), solved) else { return };
+            let (Some(&t), SolvedSteps::One(plan, one, _, equilibrium)) = (times.next(), solved) else {
+                return;
+            };
+            let seconds = workspaces.on(plan);
             if let Some(equilibrium) = equilibrium {
                 for (driver, rates) in equilibrium.driver_rates(one, t) {
                     if let Some(k) = drivers.iter().position(|d| *d == driver) {

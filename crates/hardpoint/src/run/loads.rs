@@ -26,14 +26,15 @@ impl Analysis<'_> {
         let elastic = model.elastic_directions();
         let sensitivities = sensitivities && !elastic.is_empty() && !model.variables.is_empty();
         let design = self.prepare(design, Scope::of_one(sensitivities, true));
-        let solver =
-            LoadSolver::new(self.design_map(), self.topology(), &design.values, Vec::new(), sensitivities);
-        let mut walk = Walk::new(self, &design, vec![false; model.bodies.len()]);
-        walk.loads = Some(solver.checking_reactions().with_deflections(elastic.clone()));
+        let mut walk = Walk::new(self, &design, vec![false; model.bodies.len()]).with_loads(|plan| {
+            let (map, topology) = (plan.analysis.design_map(), plan.analysis.topology());
+            let solver = LoadSolver::new(map, topology, &plan.design.values, Vec::new(), sensitivities);
+            solver.checking_reactions().with_deflections(elastic.clone())
+        });
         let mut result = Loads { largest_deflections: vec![None; elastic.len()], ..Loads::default() };
         let (pushed, given) = (model.points_of_application(), model.given_forces());
         result.stop = walk.all(&mut NullSink, &mut |_| ControlFlow::Continue(()), |_, solved, _, _| {
-            let SolvedSteps::One(_, Some(solver), _) = solved else { return };
+            let SolvedSteps::One(_, _, Some(solver), _) = solved else { return };
             let step = result.times.len();
             result.times.push(model.times[step]);
             result.friction_known.push(solver.is_friction_known());

@@ -3,8 +3,8 @@
 use std::ops::ControlFlow;
 
 use super::sink::NullSink;
-use super::walk::{Scope, SolvedSteps};
-use super::{Analysis, PreparedDesign, Walk};
+use super::walk::{PerPlan, Plan, Scope, SolvedSteps};
+use super::{Analysis, Walk};
 use crate::model::VariableId;
 use crate::motion::margin::Margins;
 use crate::motion::state_along::StateAlong;
@@ -45,32 +45,37 @@ impl Analysis<'_> {
         below: f64,
     ) -> MarginDerivatives {
         let design = self.prepare(design, Scope::of_one(true, false));
-        let (model, topology, design_map) = (self.solved_model(), self.topology(), self.design_map());
-        let openings = self.openings().map_or(&[][..], |(openings, _)| openings);
-        let direction = |v: &VariableId| {
-            let field = design.fields[v.0].clone().with_openings(openings);
-            let mut values: Vec<Dual> = design.values.iter().map(|b| Dual::constant(*b)).collect();
-            values[v.0] = Dual::variable(design.values[v.0]);
-            let geometry = design_map.geometry(&values);
-            Direction {
-                field: PlanVelocity::new(topology, &field),
-                direct: DirectDifferentiation::new(model, topology),
-                along: StateAlong::new(model, topology, &geometry),
-                margins: Margins::new(model, topology, &geometry),
-            }
-        };
-        let mut directions: Vec<Direction> = variables.iter().map(direction).collect();
-        let mut values = Margins::new(model, topology, &design.geometry);
-        let mut found = MarginDerivatives::default();
+        let model = self.model();
         // Sensitivities are solved where derivatives are requested only.
-        let only_position = PreparedDesign {
-            fields: if openings.is_empty() { Vec::new() } else { design.fields.clone() },
-            ..design
-        };
+        let (all_fields, mut only_position) = (design.fields.clone(), design);
+        if self.openings().is_none() {
+            only_position.fields.clear();
+        }
+        let mut workspaces = PerPlan::new(self, &only_position, |Plan { analysis, design, .. }: Plan<'_>| {
+            let (model, topology) = (analysis.solved_model(), analysis.topology());
+            let openings = analysis.openings().map_or(&[][..], |(openings, _)| openings);
+            let direction = |v: &VariableId| {
+                let field = all_fields[v.0].clone().with_openings(openings);
+                let mut values: Vec<Dual> = design.values.iter().map(|b| Dual::constant(*b)).collect();
+                values[v.0] = Dual::variable(design.values[v.0]);
+                let geometry = analysis.design_map().geometry(&values);
+                Direction {
+                    field: PlanVelocity::new(topology, &field),
+                    direct: DirectDifferentiation::new(model, topology),
+                    along: StateAlong::new(model, topology, &geometry),
+                    margins: Margins::new(model, topology, &geometry),
+                }
+            };
+            let directions: Vec<Direction> = variables.iter().map(direction).collect();
+            (directions, Margins::new(model, topology, &design.geometry))
+        });
+        let mut found = MarginDerivatives::default();
         let mut walk = Walk::new(self, &only_position, vec![false; model.bodies.len()]);
         let times = &self.model().times;
         found.stop = walk.all(&mut NullSink, &mut |_| ControlFlow::Continue(()), |_, solved, _, _| {
-            let SolvedSteps::One(one, _, equilibrium) = solved else { return };
+            let SolvedSteps::One(plan, one, _, equilibrium) = solved else { return };
+            let model = plan.analysis.solved_model();
+            let (directions, values) = workspaces.on(plan);
             let t = times[found.margins.len()];
             let margin = values.at(&one.mechanism.topology, &one.mechanism.state);
             found.margins.push(margin);
@@ -93,7 +98,7 @@ impl Analysis<'_> {
                     along.set(model, mechanism, &direct.flow.speeds[0]);
                     margins.derivative(&mechanism.topology, &along.state, margin.block).unwrap_or(0.0)
                 };
-            found.d.push(variables.iter().zip(&mut directions).map(derivative).collect());
+            found.d.push(variables.iter().zip(directions).map(derivative).collect());
         });
         found
     }

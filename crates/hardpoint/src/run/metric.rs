@@ -105,13 +105,14 @@ fn metric_value(model: &Model, solution: &Solution, metric: &Metric) -> MetricVa
     };
     // If the motion was solved between output times, the metric is taken at a solved time. Integrals are not, nor is an
     // extremum between times without rates.
+    let is_located = is_among(&solution.located, metric);
     let hidden = match metric.take {
         Reduction::Mean | Reduction::Integral | Reduction::Rms(_) => true,
-        Reduction::Least | Reduction::Greatest | Reduction::Range => y.orders == 1,
+        Reduction::Least | Reduction::Greatest | Reduction::Range => y.orders == 1 && !is_located,
         Reduction::Change | Reduction::RmsAtPoints(_) | Reduction::Value(_) | Reduction::Slope(_) => false,
     };
     let resolved = !hidden
-        && solution.between.is_some()
+        && (solution.between.is_some() || is_located)
         && unresolved_times(solution_of(solution), metric, true).is_empty();
     let error = if resolved { None } else { interpolation_error(metric, &y, &x, value, time) };
     let range = match metric.take {
@@ -300,6 +301,12 @@ fn curves<'s>(solution: &'s Solution, metric: &Metric) -> Option<Curves<'s, f64>
     curves_at(solution_of(solution), metric)
 }
 
+/// True if a metric is the least of the solved times, since it is of one of these clearances, whose minima are located
+/// among them.
+pub(super) fn is_among(located: &[OutputSource], metric: &Metric) -> bool {
+    metric.take == Reduction::Least && metric.window.is_none() && located.contains(&metric.of)
+}
+
 /// Curves at the times of the solution itself.
 fn curves_at<'s>(solution: &'s Solution, metric: &Metric) -> Option<Curves<'s, f64>> {
     let measured = &solution.measured;
@@ -307,6 +314,7 @@ fn curves_at<'s>(solution: &'s Solution, metric: &Metric) -> Option<Curves<'s, f
     let now = |output: OutputSource| {
         let (m, orders, kinks) = column(measured, output)?;
         let values = rows.iter().map(|k| measured.value(*k, m)).collect();
+        let orders = if is_among(&solution.located, metric) { 1 } else { orders };
         Some(SampledCurve { times, orders, kinks, values })
     };
     Some((now(metric.of)?, abscissa(metric, now)?))
@@ -349,6 +357,7 @@ fn varied_curves<'s>(
             [0, 1, 2].map(|order| Dual { v: x[order], d: d[order] })
         };
         let values = rows.iter().copied().map(number).collect();
+        let orders = if is_among(&solution.located, metric) { 1 } else { orders };
         Some(SampledCurve { times, orders, kinks, values })
     };
     Some((varied(metric.of)?, abscissa(metric, varied)?))

@@ -1,5 +1,9 @@
 //! Nearest admissible change: the requested change plus the smallest further change that keeps the joints closed.
 
+use std::ops::ControlFlow;
+
+use super::sink::NullSink;
+use super::walk::{PerPlan, SolvedSteps};
 use super::{Analysis, Walk};
 use crate::linalg::{FullPivot, least_squares};
 use crate::model::{Change, End, Model, VariableId};
@@ -125,12 +129,17 @@ fn conditions(analysis: &Analysis<'_>, scales: &[f64]) -> Vec<Vec<f64>> {
     let mut done = 0;
     let every = model.times.len().div_ceil(TIMES).max(1);
     let topology = analysis.topology();
-    let mut direct = DirectDifferentiation::new(model, topology);
-    let mut parts: Vec<_> = fields.iter().map(|f| PlanVelocity::new(topology, f)).collect();
+    let mut workspaces = PerPlan::new(analysis, &design, |plan| {
+        let topology = plan.analysis.topology();
+        let parts: Vec<_> = fields.iter().map(|f| PlanVelocity::new(topology, f)).collect();
+        (DirectDifferentiation::new(model, topology), parts)
+    });
     if topology.redundant().next().is_some() {
         // A motion that stops early contributes fewer conditions.
-        let _ = walk.each(|one| {
+        let _ = walk.all(&mut NullSink, &mut |_| ControlFlow::Continue(()), |_, solved, _, _| {
+            let SolvedSteps::One(plan, one, ..) = solved else { return };
             let mechanism = &mut one.mechanism;
+            let (direct, parts) = workspaces.on(plan);
             if done % every == 0 {
                 mechanism.state.finish_wrenches(&mechanism.topology);
                 let first = rows.len();

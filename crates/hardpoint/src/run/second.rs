@@ -5,12 +5,12 @@ use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 
 use super::sink::NullSink;
-use super::walk::{Scope, SolvedSteps};
+use super::walk::{PerPlan, Plan, Scope, SolvedSteps};
 use super::{Analysis, PreparedDesign, Walk};
 use crate::design::BodyFixed;
 use crate::equilibrium::{Along, Curvatures};
 use crate::measure::{Instant, Output, bodies_asked_for, outputs};
-use crate::model::{BodyId, DriverId, GROUND, MeasureKind};
+use crate::model::{BodyId, GROUND};
 use crate::motion::Stop;
 use crate::motion::mechanism::Mechanism;
 use crate::number::Dual;
@@ -88,8 +88,8 @@ impl Analysis<'_> {
             bodies: model.bodies.len(),
             ..SecondDerivatives::default()
         };
-        if let Some(openings) = self.openings() {
-            return self.second_at_equilibrium(design, &directions, openings, result);
+        if self.openings().is_some() {
+            return self.second_at_equilibrium(design, &directions, result);
         }
         let design = self.design(design);
         let mut walk = Walk::new(self, &design, vec![false; model.bodies.len()]);
@@ -108,27 +108,30 @@ impl Analysis<'_> {
         &self,
         design: &[f64],
         directions: &[Vec<f64>],
-        (openings, kinds): (&[DriverId], &[MeasureKind]),
         mut result: SecondDerivatives,
     ) -> SecondDerivatives {
         let design = self.prepare(design, Scope::of_one(true, false));
-        let (model, topology) = (self.model(), self.topology());
+        let model = self.model();
         let pairs = result.pairs.clone();
         let seconds: BTreeSet<usize> = pairs.iter().map(|[_, w]| *w).collect();
-        let of = |w: usize| {
-            let along = (&design.values[..], &directions[w][..]);
-            let direction = vec![Along::Design(directions[w].clone())];
-            (w, Curvatures::new(self.design_map(), topology, along, (openings, kinds), direction))
-        };
-        let mut curvatures: Vec<(usize, Curvatures<'_>)> = seconds.into_iter().map(of).collect();
+        let mut workspaces = PerPlan::new(self, &design, |Plan { analysis, design, .. }: Plan<'_>| {
+            let Some(openings) = analysis.openings() else { return Vec::new() };
+            let of = |w: usize| {
+                let along = (&design.values[..], &directions[w][..]);
+                let direction = vec![Along::Design(directions[w].clone())];
+                (w, Curvatures::new(analysis.design_map(), analysis.topology(), along, openings, direction))
+            };
+            seconds.iter().map(|w| of(*w)).collect()
+        });
         let mut walk = Walk::new(self, &design, vec![false; model.bodies.len()]);
         let count = result.outputs.len();
         result.stop = walk.all(&mut NullSink, &mut |_| ControlFlow::Continue(()), |_, solved, _, _| {
-            let SolvedSteps::One(one, _, Some(equilibrium)) = solved else { return };
+            let SolvedSteps::One(plan, one, _, Some(equilibrium)) = solved else { return };
+            let curvatures: &mut Vec<(usize, Curvatures<'_>)> = workspaces.on(plan);
             let t = model.times[result.times.len()];
             // Per second direction: first derivatives of all outputs along it, and per variable the second ones.
             let mut found = Vec::new();
-            for (w, curvatures) in &mut curvatures {
+            for (w, curvatures) in curvatures.iter_mut() {
                 equilibrium.curve(one, t, curvatures, 0);
                 let (mut first, mut by_variable) = (vec![0.0; count], Vec::new());
                 for v in 0..model.variables.len() {

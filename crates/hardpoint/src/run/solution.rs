@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::measure::MeasureResults;
-use crate::model::BodyId;
+use crate::model::{BodyId, OutputSource};
 use crate::motion::{BodyState, Motion, SolverStatistics, Stop};
 use crate::sensitivity::{Admissibility, Sensitivities};
 
@@ -23,6 +23,8 @@ pub struct Solution {
     /// Times of a motion at more times that no metric has located: they do not depend on the design. Empty if none is
     /// located.
     pub(crate) unlocated: Vec<f64>,
+    /// Clearances, as outputs, whose minima are all among the times that are solved.
+    pub(crate) located: Vec<OutputSource>,
 }
 
 impl Solution {

@@ -1,7 +1,7 @@
 //! Solution of one design at all output times.
 
 use std::ops::{ControlFlow, Range};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use hardpoint_tape::LANES;
 
@@ -24,6 +24,13 @@ use super::analysis::Analysis;
 use super::needed::NeededResults;
 use super::request::Progress;
 use super::sink::{NullSink, Sink, hand_over};
+
+/// Part of the way to an output time by which other openings must lead further than those before them: less is the
+/// distance from an end of the motion at which each stops.
+const FURTHER: f64 = 1e-6;
+
+/// Part of the pivot ratio with other openings below which those at hand are worse.
+const BETTER: f64 = 0.1;
 
 /// Requested results of a design.
 #[derive(Clone, Copy, Debug)]
@@ -54,6 +61,75 @@ pub(crate) struct PreparedDesign {
     pub scope: Scope,
     /// Results that count: all of them if `None`.
     pub needs: Option<Arc<NeededResults>>,
+    /// The same design where its equilibria go on with other openings.
+    pub continued: Continuations,
+}
+
+/// An analysis with the design that it solves.
+#[derive(Clone, Copy)]
+pub(crate) struct Plan<'a> {
+    pub analysis: &'a Analysis<'a>,
+    pub design: &'a PreparedDesign,
+    /// Number of plans that were followed before.
+    number: usize,
+}
+
+/// A workspace that belongs to a plan, and is made again for the next one.
+pub(crate) struct PerPlan<W, F> {
+    make: F,
+    number: usize,
+    made: W,
+}
+
+impl<'a, W, F: Fn(Plan<'a>) -> W> PerPlan<W, F> {
+    pub fn new(analysis: &'a Analysis<'a>, design: &'a PreparedDesign, make: F) -> Self {
+        Self { number: 0, made: make(Plan { analysis, design, number: 0 }), make }
+    }
+
+    /// The workspace of the first plan, before the walk begins.
+    pub fn first(&self) -> &W {
+        &self.made
+    }
+
+    /// The workspace of this plan.
+    pub fn on(&mut self, plan: Plan<'a>) -> &mut W {
+        if plan.number != self.number {
+            (self.number, self.made) = (plan.number, (self.make)(plan));
+        }
+        &mut self.made
+    }
+}
+
+/// Plans with other openings, in the order of their first use.
+#[derive(Default)]
+pub(crate) struct Continuations(OnceLock<Box<(Continuation, Continuations)>>);
+
+/// A plan that continues another from any of its positions.
+struct Continuation {
+    analysis: Analysis<'static>,
+    design: PreparedDesign,
+}
+
+impl Continuations {
+    /// The plan with the openings of this analysis, which is added if it is new.
+    fn with(
+        &self,
+        analysis: Analysis<'static>,
+        prepare: impl Fn(&Analysis<'_>) -> PreparedDesign,
+    ) -> &Continuation {
+        let mut last = self;
+        while let Some((plan, next)) = last.0.get().map(|found| &**found) {
+            if plan.analysis.drives_the_same(&analysis) {
+                return plan;
+            }
+            last = next;
+        }
+        let new = || {
+            let design = prepare(&analysis);
+            Box::new((Continuation { analysis, design }, Self::default()))
+        };
+        &last.0.get_or_init(new).0
+    }
 }
 
 impl PreparedDesign {
@@ -66,12 +142,17 @@ impl PreparedDesign {
 /// Solver of one design at all output times.
 pub(crate) struct Walk<'a> {
     analysis: &'a Analysis<'a>,
+    first: &'a PreparedDesign,
+    /// The plan that is followed now.
+    plan: Plan<'a>,
     pub one: Stepper<'a>,
     batch: TimeBatch<'a>,
     /// `None` if no sensitivities are requested.
     pub solver: Option<SensitivitySolver>,
     /// `None` if no loads are requested.
-    pub loads: Option<LoadSolver<'a>>,
+    loads: Option<LoadSolver<'a>>,
+    /// Makes the solver of the loads.
+    loads_of: Option<Box<dyn Fn(Plan<'a>) -> LoadSolver<'a> + 'a>>,
     /// `None` if all joints are rigid.
     pub equilibrium: Option<EquilibriumSolver<'a>>,
     /// Per body: true if its results are requested.
@@ -88,7 +169,7 @@ pub(crate) struct Walk<'a> {
 
 /// Steps that were just solved: one output time, or several in these lanes of a program.
 pub(crate) enum SolvedSteps<'w, 'a> {
-    One(&'w mut Stepper<'a>, Option<&'w LoadSolver<'a>>, Option<&'w mut EquilibriumSolver<'a>>),
+    One(Plan<'a>, &'w mut Stepper<'a>, Option<&'w LoadSolver<'a>>, Option<&'w mut EquilibriumSolver<'a>>),
     Batch(&'w Tape, Range<usize>, Option<&'w TurnCounter<'a>>),
 }
 
@@ -116,10 +197,13 @@ impl<'a> Walk<'a> {
         };
         Self {
             analysis,
+            first: design,
+            plan: Plan { analysis, design, number: 0 },
             one,
             batch: TimeBatch::new(None, &[], None),
             solver: (!fields.is_empty()).then(solver),
             loads: None,
+            loads_of: None,
             equilibrium,
             wanted,
             needs: design.needs.clone(),
@@ -127,6 +211,11 @@ impl<'a> Walk<'a> {
             undefined: design.undefined,
             done: 0,
         }
+    }
+
+    /// The same solver with loads, by the solver that `of` makes for each plan.
+    pub fn with_loads(self, of: impl Fn(Plan<'a>) -> LoadSolver<'a> + 'a) -> Self {
+        Self { loads: Some(of(self.plan)), loads_of: Some(Box::new(of)), ..self }
     }
 
     /// Solver that uses programs, one output time per lane, if that is possible and saves time.
@@ -156,7 +245,7 @@ impl<'a> Walk<'a> {
     /// stored.
     pub fn each(&mut self, mut then: impl FnMut(&mut Stepper<'a>)) -> Option<Stop> {
         self.all(&mut NullSink, &mut |_| ControlFlow::Continue(()), |_, solved, _, _| {
-            if let SolvedSteps::One(one, ..) = solved {
+            if let SolvedSteps::One(_, one, ..) = solved {
                 then(one);
             }
         })
@@ -191,7 +280,7 @@ impl<'a> Walk<'a> {
                 }
                 (count, stop) = self.report(1, progress);
                 self.give_one(k, sink);
-                SolvedSteps::One(&mut self.one, self.loads.as_ref(), self.equilibrium.as_mut())
+                SolvedSteps::One(self.plan, &mut self.one, self.loads.as_ref(), self.equilibrium.as_mut())
             } else {
                 (count, stop) = self.report(at_once, progress);
                 let lanes = self.give_batch(k, count, sink);
@@ -220,7 +309,10 @@ impl<'a> Walk<'a> {
         let step = match &mut self.equilibrium {
             Some(equilibrium) => {
                 let begun = if k == 0 { advance::start_at_rest(&mut self.one, t) } else { Ok(()) };
-                begun.and_then(|()| equilibrium.step(&mut self.one, t))
+                match begun {
+                    Ok(()) => equilibrium.step(&mut self.one, t).or_else(|stop| self.go_on(t, stop)),
+                    Err(stop) => Err(stop),
+                }
             }
             None if k == 0 => advance::start(&mut self.one, t),
             None => advance::advance(&mut self.one, t),
@@ -231,6 +323,93 @@ impl<'a> Walk<'a> {
             }
             stop
         })
+    }
+
+    /// Goes on to the equilibrium at time t where the openings at hand no longer describe the motion: with those that
+    /// the constraints leave at the position accepted last. Returns the stop if it ends there with these as well.
+    fn go_on(&mut self, t: f64, mut stop: Box<Stop>) -> Result<(), Box<Stop>> {
+        loop {
+            let is_patient = self.equilibrium.as_ref().is_none_or(|equilibrium| equilibrium.is_patient);
+            if is_patient && !may_end_with_openings(&stop.kind) {
+                return Err(stop);
+            }
+            let rows = self.one.mechanism.accepted_rows();
+            let Some((is_singular, analysis)) = self.plan.analysis.examine_openings(&rows) else {
+                return Err(stop);
+            };
+            let other = analysis.and_then(|analysis| self.in_openings_of(analysis));
+            let worth = |other: &Walk<'_>| {
+                is_patient || self.one.least_pivot_ratio() < BETTER * other.one.least_pivot_ratio()
+            };
+            let taken = other.filter(worth).and_then(|mut other| {
+                let equilibrium = other.equilibrium.as_mut()?;
+                equilibrium.is_patient = is_patient;
+                let from = equilibrium.reached();
+                let step = equilibrium.step(&mut other.one, t);
+                let goes_on = match (from, equilibrium.reached()) {
+                    ((_, Some(from)), (_, Some(to))) => to - from > FURTHER * (t - from),
+                    ((from, None), (to, None)) => to - from > FURTHER,
+                    ((_, None), (_, Some(_))) | ((_, Some(_)), (_, None)) => true,
+                };
+                goes_on.then_some((other, step))
+            });
+            let step = match (taken, &mut self.equilibrium) {
+                (Some((other, step)), _) => {
+                    self.follow_plan(other);
+                    step
+                }
+                (None, Some(equilibrium)) if !is_patient => {
+                    equilibrium.is_patient = true;
+                    equilibrium.step(&mut self.one, t)
+                }
+                (None, _) => {
+                    if is_singular {
+                        stop.kind = StopKind::Limit;
+                        stop.joints = self.one.joints_nearest_to_singular();
+                    }
+                    return Err(stop);
+                }
+            };
+            match step {
+                Ok(()) => return Ok(()),
+                Err(next) => stop = next,
+            }
+        }
+    }
+
+    /// Solver of the same model with the openings of another analysis, at the position accepted last; `None` if it
+    /// cannot continue there.
+    fn in_openings_of(&self, analysis: Analysis<'static>) -> Option<Walk<'a>> {
+        let first = self.first;
+        let prepare = |analysis: &Analysis<'_>| PreparedDesign {
+            opens: first.opens.clone(),
+            needs: first.needs.clone(),
+            ..analysis.prepare(&first.values, first.scope)
+        };
+        let Continuation { analysis, design } = first.continued.with(analysis, prepare);
+        let mut other = Walk::new(analysis, design, self.wanted.clone());
+        other.plan.number = self.plan.number + 1;
+        other.one.continue_from(&self.one).ok()?;
+        let (equilibrium, before) = (other.equilibrium.as_mut()?, self.equilibrium.as_ref()?);
+        let is_continued = equilibrium.continue_from(before, &mut other.one);
+        // Results have the bodies of the first plan that each variable moves.
+        let moves_the_same = match (&mut other.solver, &self.solver) {
+            (Some(solver), Some(before)) => {
+                solver.continue_from(before);
+                solver.moved().eq(before.moved())
+            }
+            (None, None) => true,
+            (Some(_), None) | (None, Some(_)) => false,
+        };
+        (is_continued && moves_the_same).then_some(other)
+    }
+
+    /// Follows the plan of another solver.
+    fn follow_plan(&mut self, other: Walk<'a>) {
+        let Walk { plan, mut one, solver, equilibrium, .. } = other;
+        one.assembly = self.one.assembly.take();
+        self.loads = self.loads_of.as_ref().map(|of| of(plan));
+        (self.plan, self.one, self.solver, self.equilibrium) = (plan, one, solver, equilibrium);
     }
 
     /// Stop of the caller after `done` output times.
@@ -311,5 +490,26 @@ impl<'a> Walk<'a> {
     /// Admissibility per variable, for the output times solved so far.
     pub fn admissibility(&self, opens: &[Vec<JointDefect>]) -> Vec<Admissibility> {
         self.solver.as_ref().map_or_else(Vec::new, |s| s.admissibility(opens, self.done))
+    }
+}
+
+/// True if the equilibria along a motion may end for this reason because of the openings that describe it.
+fn may_end_with_openings(kind: &StopKind) -> bool {
+    match kind {
+        StopKind::LimitLoad { .. }
+        | StopKind::NoEquilibrium
+        | StopKind::Unstable { .. }
+        | StopKind::TooStiff { .. } => true,
+        StopKind::Limit
+        | StopKind::BranchChange
+        | StopKind::DoesNotAssemble
+        | StopKind::Locked { .. }
+        | StopKind::LawNotFinite { .. }
+        | StopKind::LoadNotFinite { .. }
+        | StopKind::FormulaNotFinite { .. }
+        | StopKind::TooFar { .. }
+        | StopKind::JointLimit { .. }
+        | StopKind::Interrupted
+        | StopKind::NothingHolds { .. } => false,
     }
 }

@@ -14,12 +14,13 @@ use crate::model::{BodyId, DriverId, Model, OutputSource, VariableId};
 use crate::motion::margin::Margins;
 use crate::motion::{BodyState, Motion};
 use crate::sensitivity::{Admissibility, BodySensitivity, Sensitivities};
+use crate::topology::CoordinateId;
 
 use super::analysis::Analysis;
 use super::request::{Progress, Run};
 use super::sink::Sink;
 use super::solution::Solution;
-use super::walk::{PreparedDesign, SolvedSteps, Walk};
+use super::walk::{PerPlan, Plan, PreparedDesign, SolvedSteps, Walk};
 
 /// Size of the results of one output time, in bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,34 +96,43 @@ impl Analysis<'_> {
         solution.between = None;
         let variables = if sensitive { model.variables.len() } else { 0 };
         let of_motion = self.openings().is_none();
-        let openings = self.openings().map_or(&[][..], |(openings, _)| openings);
-        let slopes = || {
-            let asked = (0..model.measures.len()).filter(|m| design.needs_measure(*m));
-            Slopes::new(self.design_map(), topology, (&design.values, asked), sensitive, openings)
-        };
-        let mut slopes = measures.then(slopes).flatten();
         let wanted = vec![true; model.bodies.len()];
         let giving = || Compliances::new(self.design_map(), topology, &design.values, sensitive);
         let mut compliances = (measures && of_motion).then(giving).flatten();
         let loads = measures && (self.asks_for_loads() || compliances.is_some());
+        let mut workspaces = PerPlan::new(self, design, |Plan { analysis, design, .. }: Plan<'_>| {
+            let (map, plan) = (analysis.design_map(), analysis.topology());
+            let slopes = || {
+                let asked = (0..model.measures.len()).filter(|m| design.needs_measure(*m));
+                let openings = analysis.openings().map_or(&[][..], |(openings, _)| openings);
+                Slopes::new(map, plan, (&design.values, asked), sensitive, openings)
+            };
+            let slopes = measures.then(slopes).flatten();
+            let openings = analysis.openings().filter(|_| measures && sensitive);
+            let curvatures = openings.and_then(|openings| {
+                let directions = derived_along(model, &slopes, design);
+                let along = (&design.values[..], &[][..]);
+                (!directions.is_empty()).then(|| Curvatures::new(map, plan, along, openings, directions))
+            });
+            let margins = Margins::new(analysis.solved_model(), plan, &design.geometry);
+            Workspaces { slopes, curvatures, margins, coordinates: plan.places(topology).flatten().collect() }
+        });
         let mut walk = match measures && self.needs_kernel().is_some() {
             true => Walk::new(self, design, wanted),
-            false => Walk::by_programs(self, design, wanted, (measures, slopes.is_some(), loads)),
+            false => Walk::by_programs(
+                self,
+                design,
+                wanted,
+                (measures, workspaces.first().slopes.is_some(), loads),
+            ),
         };
-        let mut curvatures = self.openings().filter(|_| measures && sensitive).and_then(|openings| {
-            let directions = derived_along(model, &slopes, design);
-            if directions.is_empty() {
-                return None;
-            }
-            let along = (&design.values[..], &[][..]);
-            Some(Curvatures::new(self.design_map(), topology, along, openings, directions))
-        });
         if loads {
-            let measures = load_measures(model);
-            let differentiates = sensitive && measures.iter().any(|m| design.needs_measure(*m));
-            let solver =
-                LoadSolver::new(self.design_map(), topology, &design.values, measures, differentiates);
-            walk.loads = Some(solver);
+            walk = walk.with_loads(|Plan { analysis, design, .. }| {
+                let measures = load_measures(model);
+                let differentiates = sensitive && measures.iter().any(|m| design.needs_measure(*m));
+                let (map, topology) = (analysis.design_map(), analysis.topology());
+                LoadSolver::new(map, topology, &design.values, measures, differentiates)
+            });
         }
         let rows = usize::min(rows, model.times.len());
         let mut sensitivities = std::mem::take(&mut solution.sensitivities);
@@ -138,18 +148,19 @@ impl Analysis<'_> {
             slopes: StepValues::new(model, variables, rows),
         };
         self.make_room(&mut window.motion, rows);
-        let mut margins = Margins::new(self.solved_model(), topology, &design.geometry);
         let stop = walk.all(&mut window, progress, |window, solved, count, solver| {
             let times = &model.times[window.done..window.done + count];
             let k = window.done - window.first;
             window.done += count;
             match solved {
-                SolvedSteps::One(one, loads, mut equilibrium) => {
+                SolvedSteps::One(plan, one, loads, mut equilibrium) => {
+                    let openings = plan.analysis.openings().map_or(0, |(openings, _)| openings.len());
+                    let Workspaces { slopes, curvatures, margins, coordinates } = workspaces.on(plan);
                     if measures && !window.slopes.measures().is_empty() {
                         window.slopes.begin();
                     }
-                    if let (Some(found), Some(equilibrium)) = (&mut slopes, &mut equilibrium) {
-                        found.set_openings(openings.len(), &equilibrium.driver_rates(one, times[0]));
+                    if let (Some(found), Some(equilibrium)) = (&mut *slopes, &mut equilibrium) {
+                        found.set_openings(openings, &equilibrium.driver_rates(one, times[0]));
                     }
                     let mut along_drivers = Vec::new();
                     let is_curved =
@@ -166,7 +177,7 @@ impl Analysis<'_> {
                             along_drivers = equilibrium.poses_along_drivers(one, times[0], curvatures);
                         }
                     }
-                    if let Some(found) = &mut slopes {
+                    if let Some(found) = slopes {
                         found.add(&mut one.mechanism, times[0], &along_drivers, &mut window.slopes);
                     }
                     if let Some(loads) = loads {
@@ -175,7 +186,7 @@ impl Analysis<'_> {
                             compliances.add(&mut one.mechanism, times[0], loads.near(), &mut window.slopes);
                         }
                     }
-                    window.motion.coordinates.set(k, 0, one.mechanism.coordinates());
+                    window.motion.coordinates.set(k, 0, one.mechanism.coordinates(coordinates));
                     if let Some(turns) = &one.turns {
                         window.motion.counted.extend_from_slice(&turns.values);
                     }
@@ -217,6 +228,15 @@ impl Analysis<'_> {
         solution.stop = stop;
         window.first
     }
+}
+
+/// Workspaces for the results of an output time, besides the solvers of a walk.
+struct Workspaces<'a> {
+    slopes: Option<Slopes<'a>>,
+    curvatures: Option<Curvatures<'a>>,
+    margins: Margins<f64>,
+    /// Coordinates in the order of the first plan.
+    coordinates: Vec<CoordinateId>,
 }
 
 /// Directions along which compliances and slopes at an equilibrium are derivatives: their derivatives by the variables
@@ -345,6 +365,7 @@ impl SampledResults {
         self.solution.measured.variables = whole.sensitivities.variables;
         self.solution.stop = whole.stop.clone();
         self.solution.between = whole.between.clone();
+        self.solution.located.clone_from(&whole.located);
         let cannot =
             |v: &usize| matches!(whole.sensitivities.admissibility[*v], Admissibility::CannotFollow { .. });
         self.solution.measured.forget((0..whole.sensitivities.variables).filter(cannot));

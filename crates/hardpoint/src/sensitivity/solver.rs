@@ -59,6 +59,11 @@ impl SensitivitySolver {
         Self { at_rest: true, ..self }
     }
 
+    /// Takes over which joints resisted on the path before.
+    pub fn continue_from(&mut self, before: &Self) {
+        self.resisting.clone_from(&before.resisting);
+    }
+
     /// Reserves memory for all sensitivities over this number of steps, within the memory at hand.
     pub fn make_room(&self, sensitivities: &mut Sensitivities, steps: usize) {
         sensitivities.shape(self.bodies, self.fields.len(), self.moved(), steps);

@@ -18,7 +18,7 @@ mod tree;
 
 pub use error::TopologyError;
 pub use ids::{BlockId, ClosureId, CoordinateId, Ids, LinkId, RowId};
-pub(crate) use openings::{OpenTree, dependence, open_tree};
+pub(crate) use openings::{Dependence, OpenTree, TreeRow, dependence, open_tree};
 pub use redundancy::Redundancy;
 pub(crate) use size::units_of;
 pub use start::StartCoordinates;
@@ -342,6 +342,18 @@ impl Topology {
         CoordinateId::each(&self.coordinates).filter_map(|(c, coordinate)| match coordinate.set_by {
             SetBy::Driver(d) => Some((c, d)),
             SetBy::Block { .. } => None,
+        })
+    }
+
+    /// Returns per coordinate of another plan of the same tree the one here that is the same.
+    pub(crate) fn places<'t>(
+        &'t self,
+        other: &'t Topology,
+    ) -> impl Iterator<Item = Option<CoordinateId>> + 't {
+        CoordinateId::each(&other.coordinates).map(|(c, coordinate)| {
+            let link = &other[coordinate.link];
+            let k = link.coordinates().position(|own| own == c)?;
+            self.links.iter().find(|own| own.child == link.child)?.coordinates().nth(k)
         })
     }
 

@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 
 use crate::model::{BodyId, DriverId, JointId, Model};
 
-use super::blocks::{RANK_TOLERANCE, design_jacobian};
+use super::blocks::{RANK_TOLERANCE, SparseRow, design_jacobian};
 use super::tree::choose_tree;
-use super::{CoordinateId, Formulation, JointRole, SetBy, Topology, size};
+use super::{CoordinateId, Formulation, JointRole, RowId, SetBy, Topology, size};
 
 /// Lever arm of an unknown coordinate, beside that of an opening, below which the opening is determined instead: the
 /// rubber at a joint gives by much less than joints move, so that it keeps its leverage.
@@ -30,7 +30,13 @@ pub(crate) struct Dependence {
     pub free: Vec<(JointId, usize)>,
     /// Joints with such a freedom that is part of the rotation of a ball, which no driver prescribes.
     pub free_balls: Vec<JointId>,
+    /// Sizes of the pivots, as fractions of the largest entry.
+    pub pivots: Vec<f64>,
 }
+
+/// Row of a constraint at a position: per coordinate of the tree the body that its link places, the index among the
+/// coordinates of the link, and the entry without dimension.
+pub(crate) type TreeRow = Vec<(BodyId, usize, f64)>;
 
 /// Returns the tree of a mechanism in relative coordinates, with these joints in it if there is room for them.
 pub(crate) fn open_tree(model: &Model, preferred: &[JointId]) -> OpenTree {
@@ -42,17 +48,31 @@ pub(crate) fn open_tree(model: &Model, preferred: &[JointId]) -> OpenTree {
 }
 
 /// Finds the openings among the drivers, those from `first` on, and the released drivers that the constraints determine
-/// in the design configuration, and the free motions that remain.
+/// at a position, and the free motions that remain; in the design configuration if there are no rows of a position.
 ///
 /// The rows are eliminated by the largest pivot. An opening is determined where the unknown coordinates of its rows
 /// have next to no leverage: a rod that lies nearly in line with a hinge holds the rubber of the hinge, not its angle,
-/// which it would stop following where all is in line. A released driver is an unknown coordinate like the others:
-/// which one the user released does not matter.
-pub(crate) fn dependence(model: &Model, first: DriverId) -> Dependence {
+/// which it would stop following where all is in line. A released driver is an unknown coordinate like the others, or
+/// at a cut joint nothing at all: which one the user released does not matter.
+pub(crate) fn dependence(model: &Model, first: DriverId, at: Option<&[TreeRow]>) -> Dependence {
     let mut topology = choose_tree(model, Formulation::Relative, &[]);
     size::measure(model, &mut topology);
+    let released = model.equilibrium.as_ref().map_or(&[][..], |equilibrium| &equilibrium.released);
+    // Those of cut joints have rows, which hold nothing.
+    let at_cut_joints: Vec<DriverId> =
+        topology.closures.iter().filter_map(|c| c.driver.filter(|d| released.contains(d))).collect();
     let mut rows: Vec<BTreeMap<CoordinateId, f64>> = Vec::new();
-    for row in design_jacobian(model, &topology) {
+    let jacobian: Vec<SparseRow> = match at {
+        Some(rows) => rows.iter().map(|row| on_tree(&topology, row)).collect(),
+        None => {
+            let all = RowId::each(&topology.rows).zip(design_jacobian(model, &topology));
+            let holds = all.filter(|((_, place), _)| {
+                topology[place.closure].driver.is_none_or(|d| !at_cut_joints.contains(&d))
+            });
+            holds.map(|(_, row)| row).collect()
+        }
+    };
+    for row in jacobian {
         let mut entries = BTreeMap::new();
         for (c, x) in row {
             *entries.entry(c).or_insert(0.0) += x;
@@ -63,13 +83,14 @@ pub(crate) fn dependence(model: &Model, first: DriverId) -> Dependence {
     // their columns remain.
     let largest = rows.iter().flat_map(BTreeMap::values).fold(0.0, |most, x| f64::max(most, x.abs()));
     let unknown: Vec<CoordinateId> = topology.unknown_coordinates().collect();
-    let released = model.equilibrium.as_ref().map_or(&[][..], |equilibrium| &equilibrium.released);
     let weight = |c: CoordinateId| match topology[c].set_by {
         SetBy::Block { .. } => Some(1.0),
         SetBy::Driver(d) if d >= first => Some(POOR_LEVERAGE),
         SetBy::Driver(d) => released.contains(&d).then_some(1.0),
     };
     let pivots = eliminate(rows, largest, weight);
+    let sizes = pivots.iter().map(|(_, x)| x.abs() / largest).collect();
+    let pivots: Vec<CoordinateId> = pivots.into_iter().map(|(c, _)| c).collect();
     let (mut free, mut free_balls) = (Vec::new(), Vec::new());
     for c in unknown.iter().filter(|c| !pivots.contains(c)) {
         let link = &topology[topology[*c].link];
@@ -87,16 +108,25 @@ pub(crate) fn dependence(model: &Model, first: DriverId) -> Dependence {
         SetBy::Driver(d) => Some(d),
         SetBy::Block { .. } => None,
     });
-    Dependence { determined: determined.collect(), free, free_balls }
+    Dependence { determined: determined.chain(at_cut_joints).collect(), free, free_balls, pivots: sizes }
 }
 
-/// Eliminates rows over the columns that have a weight, by the largest weighted pivot. Returns the columns of the
-/// pivots, none of which is small beside `largest`.
+/// A row of a position by the coordinates of a tree.
+fn on_tree(topology: &Topology, row: &TreeRow) -> SparseRow {
+    let of = |(body, k, x): &(BodyId, usize, f64)| {
+        let link = topology.links.iter().find(|link| link.child == *body)?;
+        Some((link.coordinates().nth(*k)?, *x))
+    };
+    row.iter().filter_map(of).collect()
+}
+
+/// Eliminates rows over the columns that have a weight, by the largest weighted pivot. Returns the pivots with their
+/// columns, none of which is small beside `largest`.
 fn eliminate(
     mut rows: Vec<BTreeMap<CoordinateId, f64>>,
     largest: f64,
     weight: impl Fn(CoordinateId) -> Option<f64>,
-) -> Vec<CoordinateId> {
+) -> Vec<(CoordinateId, f64)> {
     let mut pivots = Vec::new();
     loop {
         let entries = rows.iter().enumerate().flat_map(|(r, row)| row.iter().map(move |(c, x)| (r, *c, *x)));
@@ -112,7 +142,7 @@ fn eliminate(
                 *other.entry(*c).or_insert(0.0) -= x / pivot * y;
             }
         }
-        pivots.push(column);
+        pivots.push((column, pivot));
     }
     pivots
 }

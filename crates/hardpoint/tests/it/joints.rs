@@ -46,6 +46,7 @@ fn shaft_train() -> Draft {
         body: body.into(),
         relative_to: None,
         about: DirectionDraft::Along(about.into()),
+        axis2: None,
     };
     let law = |text: &str| hardpoint::law::Law::parse(text).unwrap();
     Draft {

@@ -5,7 +5,7 @@ use crate::draft::{
 };
 use crate::joint::Quantity;
 use crate::model::{
-    CalibrationSettings, Dimension, DriverId, Offset, OffsetSource, PriorGroup, VariableId, VariablePrior,
+    CalibrationSettings, Dimension, Offset, OffsetSource, PriorGroup, VariableId, VariablePrior,
 };
 
 use super::optimization::per_si;
@@ -182,16 +182,14 @@ impl Checker<'_> {
     /// Resolves an offset: of a driver, or of an output with a value at rest. HP0273 otherwise.
     fn offset(&mut self, one: &OffsetDraft, here: Here) -> Option<Offset> {
         let name = &one.name;
-        let driver = self
-            .number_of("driver", name)
-            .and_then(|_| self.model.drivers.iter().position(|d| d.name == *name));
+        let driver = self.number_of("driver", name).map(|k| self.driver_ids[k]);
         let (of, dimension) = match driver {
-            Some(d) => {
-                let quantity = self.model.driven(&self.model.drivers[d]).quantity;
-                (OffsetSource::Driver(DriverId(d)), Dimension::from(quantity))
+            Some(Some(d)) => {
+                let quantity = self.model.driven(&self.model.drivers[d.0]).quantity;
+                (OffsetSource::Driver(d), Dimension::from(quantity))
             }
             // A faulty driver has been reported.
-            None if self.number_of("driver", name).is_some() => return None,
+            Some(None) => return None,
             None => {
                 let faults = self.faults.len();
                 let found = self.output(name, here.key("of"));

@@ -1,10 +1,10 @@
 //! Checks of cases: laws, output times, and motion in each case.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::BTreeSet;
 
 use crate::draft::{CaseDraft, DraftLocation, OtherDrivers, Section};
 use crate::law::Law;
-use crate::model::{Case, CaseId, DriverId, ElementId};
+use crate::model::{Case, CaseId, ElementId};
 
 use super::{Checker, Here, LISTED_NAMES};
 
@@ -13,8 +13,6 @@ impl Checker<'_> {
         let draft = self.draft;
         // The own law of a driver is reported once, however many cases use it.
         let mut reported = BTreeSet::new();
-        let known = self.model.drivers.iter().enumerate().map(|(d, driver)| (driver.name.clone(), d));
-        let known: HashMap<String, usize> = known.collect();
         for (index, c) in draft.cases.iter().enumerate() {
             let here = Here { section: Section::Cases, index };
             let times = c.times.as_ref().unwrap_or(&draft.times);
@@ -44,17 +42,15 @@ impl Checker<'_> {
                     continue;
                 }
                 let names = names.chain(forces);
-                if self.find("driver", driver, here.item("laws", k), names).is_none() {
-                    continue;
-                }
+                let Some(index) = self.find("driver", driver, here.item("laws", k), names) else { continue };
                 // A faulty driver has been reported.
-                let Some(&d) = known.get(driver) else { continue };
-                let given = self.formula_law_in((case, &c.name), (DriverId(d), driver), law, &at);
+                let Some(d) = self.driver_ids[index] else { continue };
+                let given = self.formula_law_in((case, &c.name), (d, driver), law, &at);
                 let Some(law) = given else { continue };
-                let unit = self.number_of("driver", driver).map_or("", |k| draft.drivers[k].unit);
+                let unit = draft.drivers[index].unit;
                 let of = format!("driver `{driver}` in case `{}`", c.name);
                 self.check_law(&of, (&law, unit), times, at);
-                laws[d] = Some(law);
+                laws[d.0] = Some(law);
             }
             for d in (0..laws.len()).filter(|d| laws[*d].is_none()) {
                 let (name, law) = (self.model.drivers[d].name.clone(), self.model.drivers[d].law.clone());

@@ -5,9 +5,7 @@ use std::collections::BTreeSet;
 use crate::design::{Interpolation, ShapeField};
 use crate::draft::{ChangeDraft, DirectionDraft, DraftLocation, Section, ShapeDraft, VariableDraft};
 use crate::model::change;
-use crate::model::{
-    BodyId, Change, DesignVariable, Direction, DriverId, End, HardpointId, JointId, ParameterId,
-};
+use crate::model::{BodyId, Change, DesignVariable, Direction, End, HardpointId, JointId, ParameterId};
 use crate::space::Vec3;
 
 use super::{Checker, Here, SAME_POINT, UNPLACED};
@@ -273,7 +271,7 @@ impl Checker<'_> {
                 let parameter = self.find(&what, parameter, here.key("parameter"), names)?;
                 self.check_not_zero(number(*rate), owner, at);
                 // A faulty driver has been reported.
-                let driver = self.model.drivers.iter().position(|d| d.name == *driver).map(DriverId)?;
+                let driver = self.driver_ids[k]?;
                 change::Law { driver, parameter, rate: *rate }.into()
             }
             ChangeDraft::Shape { bodies, field } => return self.shape(bodies, field, owner, here, k),

@@ -87,21 +87,44 @@ impl Checker<'_> {
             DrivenDraft::Distance { from, to } => {
                 self.driven_distance(d, [from, to], [here.key("from"), here.key("to")])
             }
-            DrivenDraft::Orientation { body, relative_to, about } => {
+            DrivenDraft::Orientation { body, relative_to, about, axis2 } => {
                 let body = self.body(body, here.key("body"));
                 let base = match relative_to {
                     Some(name) => self.body(name, here.key("relative_to")),
                     None => Some(GROUND),
                 };
-                let (axis, z) = self.line(about, &d.name, here, "about")?;
-                let (body, base) = (body?, base?);
-                let axes = Axes { axis, axis2: None, frames: [frame_along(z, z.any_perpendicular()); 2] };
+                let axes = self.heading_axes(d, about, axis2.as_ref(), here);
+                let (body, base, axes) = (body?, base?, axes?);
                 let at = self.hardpoint_on(body)?;
                 self.driven_joint(d, &joint::HEADING, [base, body], [at, at], Some(axes), Zero::None)
             }
             DrivenDraft::Measure(name) => self.driven_measure(d, name, here),
             DrivenDraft::Contact(wheel) => self.driven_contact(d, wheel, here),
         }
+    }
+
+    /// Returns the axes of the angle of a body seen along `about`. HP0209 if `axis2` has no angle in this view.
+    fn heading_axes(
+        &mut self,
+        d: &DriverDraft,
+        about: &DirectionDraft,
+        axis2: Option<&DirectionDraft>,
+        here: Here,
+    ) -> Option<Axes> {
+        let about = self.line(about, &d.name, here, "about");
+        let axis2 = axis2.map(|line| self.line(line, &d.name, here, "axis2"));
+        let (axis, z) = about?;
+        let Some(axis2) = axis2 else {
+            return Some(Axes { axis, axis2: None, frames: [frame_along(z, z.any_perpendicular()); 2] });
+        };
+        let (axis2, e) = axis2?;
+        let across = e - z * z.dot(e);
+        let x = across.unit().filter(|_| across.norm() > MIN_SINE);
+        if x.is_none() {
+            let message = format!("`about` and `axis2` of driver `{}` are parallel to each other", d.name);
+            self.fault("HP0209", here.key("axis2"), message).help("give two different directions");
+        }
+        Some(Axes { axis, axis2: Some(axis2), frames: [frame_along(z, x?); 2] })
     }
 
     fn driven_coordinate(

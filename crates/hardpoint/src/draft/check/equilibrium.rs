@@ -3,7 +3,7 @@
 use crate::draft::Section;
 use crate::joint::{DIRECTION_NAMES, DIRECTIONS, tied_directions};
 use crate::model::element::Compliance;
-use crate::model::{DriverId, Equilibrium, Joint, MeasureKind};
+use crate::model::{Equilibrium, Joint, MeasureKind};
 
 use super::{Checker, Here};
 
@@ -14,16 +14,12 @@ impl Checker<'_> {
         let here = Here { section: Section::Equilibrium, index: 0 };
         let mut released = Vec::new();
         for (k, name) in written.released.iter().enumerate() {
-            let names = draft.drivers.iter().map(|d| d.name.as_str());
-            if self.find("driver", name, here.item("released", k), names).is_none() {
-                continue;
-            }
-            let Some(d) = self.model.drivers.iter().position(|d| d.name == *name) else { continue };
-            if released.contains(&DriverId(d)) {
+            let Some(driver) = self.driver_named(name, here.item("released", k)) else { continue };
+            if released.contains(&driver) {
                 let message = format!("driver `{name}` is released twice");
                 self.fault("HP0260", here.item("released", k), message).help("name it once");
             }
-            released.push(DriverId(d));
+            released.push(driver);
         }
         for index in 0..draft.forces.len() {
             let here = Here { section: Section::Forces, index };

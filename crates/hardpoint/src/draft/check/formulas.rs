@@ -353,6 +353,12 @@ impl<'a> Checker<'a> {
         self.law_with(&given, None, (driver, name), law, at)
     }
 
+    /// Removes the formulas of the law of a faulty driver, whose number the next driver gets.
+    pub(super) fn remove_law_formulas(&mut self, driver: DriverId) {
+        self.zeros.remove(&driver);
+        self.written.retain(|w| !matches!(w.formula.of, Target::Law(of, _) if of == driver));
+    }
+
     /// Returns the law of a driver in a case, with the parameters that are defined by expressions.
     pub(super) fn formula_law_in(
         &mut self,

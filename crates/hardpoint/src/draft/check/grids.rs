@@ -1,7 +1,7 @@
 //! Checks of cases that sweep two drivers over a grid.
 
 use crate::draft::Section;
-use crate::model::{DriverId, Grid};
+use crate::model::Grid;
 
 use super::{Checker, Here};
 
@@ -22,9 +22,7 @@ impl Checker<'_> {
             let mut drivers = Vec::new();
             for (k, (driver, values)) in g.sweeps.iter().enumerate() {
                 let names = draft.drivers.iter().map(|d| d.name.as_str());
-                if self.find("driver", driver, here.item("grid", k), names).is_none() {
-                    continue;
-                }
+                let Some(found) = self.find("driver", driver, here.item("grid", k), names) else { continue };
                 let range = values.last().zip(values.first()).map_or(0.0, |(last, first)| last - first);
                 let ascends = values.windows(2).all(|pair| pair[1] - pair[0] > MIN_SEPARATION * range);
                 if !(range > 0.0 && range.is_finite() && ascends) {
@@ -34,7 +32,7 @@ impl Checker<'_> {
                     continue;
                 }
                 // A faulty driver is already reported.
-                drivers.extend(self.model.drivers.iter().position(|d| d.name == *driver).map(DriverId));
+                drivers.extend(self.driver_ids[found]);
             }
             let [(a, first), (b, second)] = &g.sweeps[..] else {
                 let message = match g.sweeps.len() {

@@ -350,18 +350,13 @@ impl Checker<'_> {
         owners.any(|(section, k)| unread.any(section, k) || self.vehicle_is_unread())
     }
 
-    fn driver_named(&mut self, name: &str, at: DraftLocation) -> Option<DriverId> {
-        let draft = self.draft;
-        self.find("driver", name, at, draft.drivers.iter().map(|d| d.name.as_str())).map(DriverId)
-    }
-
     /// Returns the driver with this name, or the only driver.
     pub(super) fn driver_or_only(&mut self, name: Option<&str>, owner: &str, here: Here) -> Option<DriverId> {
         let draft = self.draft;
         let names = draft.drivers.iter().map(|d| d.name.as_str());
         match name {
             Some(name) => self.driver_named(name, here.key("driver")),
-            None if draft.drivers.len() == 1 => Some(DriverId(0)),
+            None if draft.drivers.len() == 1 => self.driver_ids[0],
             None if self.is_table_unread("driver") => None,
             None => {
                 let listed: Vec<String> = names.map(|n| format!("`{n}`")).collect();
@@ -667,11 +662,11 @@ field!(Option<DriverId>, Driver, Name: Option<String>, may |name, _key, c| match
     None => Some(None),
 });
 field!(Vec<DriverId>, Drivers, Names: Option<Vec<String>>, may |names, key, c| {
-    let all = || Some((0..c.check.draft.drivers.len()).map(DriverId).collect());
-    names.as_ref().map_or_else(all, |names| {
-        let found: Vec<_> = names.iter().map(|name| c.check.driver_named(name, c.here.key(key))).collect();
-        found.into_iter().collect()
-    })
+    let found: Vec<_> = match names {
+        Some(names) => names.iter().map(|name| c.check.driver_named(name, c.here.key(key))).collect(),
+        None => c.check.driver_ids.clone(),
+    };
+    found.into_iter().collect()
 });
 field!(Option<Vec<DriverId>>, Drivers, Names: Option<Vec<String>>, may |names, key, c| match names {
     Some(_) => Vec::<DriverId>::resolve(names, key, c).map(Some),

@@ -63,20 +63,27 @@ impl Checker<'_> {
                 .filter(|_| d.counts_from_zero())
                 .and_then(|driven| self.nominal_value(d, driven, here));
             self.zeros.extend(zero.map(|zero| (driver, zero)));
-            let Some(law) = self.formula_law(&d.name, &d.law, &here.key("law")) else { continue };
-            if draft.cases.is_empty() {
-                self.check_law(
-                    &format!("driver `{}`", d.name),
-                    (&law, d.unit),
-                    &draft.times,
-                    here.key("law"),
-                );
+            let law = self.formula_law(&d.name, &d.law, &here.key("law"));
+            if let (Some(law), true) = (&law, draft.cases.is_empty()) {
+                self.check_law(&format!("driver `{}`", d.name), (law, d.unit), &draft.times, here.key("law"));
             }
-            let Some(Driven { joint, coordinate, .. }) = driven else { continue };
+            let Some((law, Driven { joint, coordinate, .. })) = law.zip(driven) else {
+                self.remove_law_formulas(driver);
+                self.driver_ids.push(None);
+                continue;
+            };
             self.driver_of.insert((joint, coordinate), driver);
+            self.driver_ids.push(Some(driver));
             let (name, is_reversed) = (d.name.clone(), d.reversed);
             self.model.drivers.push(Driver { name, joint, coordinate, law, is_reversed });
         }
+    }
+
+    /// Returns the driver with this name. HP0204 if there is none; no second error if the driver itself is faulty.
+    pub(super) fn driver_named(&mut self, name: &str, at: DraftLocation) -> Option<DriverId> {
+        let draft = self.draft;
+        let k = self.find("driver", name, at, draft.drivers.iter().map(|d| d.name.as_str()))?;
+        self.driver_ids[k]
     }
 
     /// Placements at which the assembly starts. HP0276: of ground, twice of one body, or not finite.

@@ -2,8 +2,8 @@
 
 use crate::draft::{AxleDraft, PointRef, Section, WheelDraft, WheelSpinDraft};
 use crate::model::{
-    ArmPlane, Axle, AxleId, AxleMeasure, BodyId, BodyPoint, Direction, DriverId, HardpointId, MeasureKind,
-    PointId, Side, TorqueReaction, VehicleEnd, Wheel, WheelId, WheelMeasure, WheelRequirement,
+    ArmPlane, Axle, AxleId, AxleMeasure, BodyId, BodyPoint, Direction, HardpointId, MeasureKind, PointId,
+    Side, TorqueReaction, VehicleEnd, Wheel, WheelId, WheelMeasure, WheelRequirement,
 };
 use crate::space::Vec3;
 
@@ -165,20 +165,14 @@ impl Checker<'_> {
             None => None,
         };
         let steer = match &w.steer {
-            Some(name) => {
-                let names = self.draft.drivers.iter().map(|d| d.name.as_str());
-                Some(self.find("driver", name, here.key("steer"), names).map(DriverId)?)
-            }
+            Some(name) => Some(self.driver_named(name, here.key("steer"))?),
             None => None,
         };
         let bump = match &w.bump {
             None if !bump => return None,
-            None => (self.draft.drivers.len() == 1).then_some(DriverId(0)),
-            Some(name) => {
-                let draft = self.draft;
-                let names = draft.drivers.iter().map(|d| d.name.as_str());
-                Some(self.find("driver", name, here.key("bump"), names).map(DriverId)?)
-            }
+            None if self.draft.drivers.len() == 1 => Some(self.driver_ids[0]?),
+            None => None,
+            Some(name) => Some(self.driver_named(name, here.key("bump"))?),
         };
         let (body, at, side, spin_axis) = (body?, centre?, side?, spin_axis?);
         self.model.points.push(BodyPoint { name: w.name.clone(), body, at, unnamed: true });

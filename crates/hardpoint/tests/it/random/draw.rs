@@ -682,7 +682,7 @@ impl<'r> Drawing<'r> {
                 let others: Vec<usize> = (1..=self.draft.bodies.len()).filter(|b| *b != body).collect();
                 let other = (self.rng.chance(0.3) && !others.is_empty()).then(|| self.rng.pick(&others));
                 let relative_to = other.map(|b| self.name(b));
-                DrivenDraft::Orientation { body: self.name(body), relative_to, about }
+                DrivenDraft::Orientation { body: self.name(body), relative_to, about, axis2: None }
             }
         }
     }
@@ -925,7 +925,7 @@ fn spoil(d: &mut Draft, rng: &mut Rng) {
         2 => {
             let body = d.bodies[rng.below(d.bodies.len())].name.clone();
             let about = DirectionDraft::Along(rng.direction());
-            let drives = DrivenDraft::Orientation { body, relative_to: None, about };
+            let drives = DrivenDraft::Orientation { body, relative_to: None, about, axis2: None };
             d.drivers.push(DriverDraft::new("more", drives, Law::constant(0.0)));
         }
         3 => each_place(d, &mut |p| *p = *p * factor),
