@@ -3,6 +3,8 @@
 //! A driver that moves by itself is a direction like a change of the design (`docs/theory.md`, section 7); how the
 //! outcome changes with the design is the second derivative along both.
 
+use std::cell::OnceCell;
+
 use hardpoint_tape::{Number, record};
 
 use crate::design::{BodyFixed, DesignMap};
@@ -229,10 +231,11 @@ impl<'a, T: Real> Slopes<'a, T> {
         for by in first..=self.variables {
             self.seconds.set_poses(state, by, &self.asked_for, &mut self.poses);
             set(by, &mut self.poses);
-            let alone = DriverAlone {
-                drivers: &self.drivers,
-                instants: self.poses.iter().map(|p| Instant::new(self.model, &self.fixed[by], p)).collect(),
-            };
+            let instants = self
+                .poses
+                .iter()
+                .map(|poses| (Instant::new(self.model, &self.fixed[by], poses), OnceCell::new()));
+            let alone = DriverAlone { drivers: &self.drivers, instants: instants.collect() };
             for &k in &self.measures {
                 found(k, by, alone.measure(self.model, k));
             }
@@ -319,12 +322,22 @@ fn motion_of<T: Real>(instant: &Instant<'_, Dual<T>>) -> T {
 /// The same position as often as there are drivers, each time with what happens while that driver alone moves.
 struct DriverAlone<'m, T> {
     drivers: &'m [DriverId],
-    instants: Vec<Instant<'m, Dual<T>>>,
+    /// Per driver, with the motion of all bodies, which is computed for the first slope.
+    instants: Vec<(Instant<'m, Dual<T>>, OnceCell<T>)>,
 }
 
 impl<T: Real> DriverAlone<'_, T> {
+    fn place(&self, driver: DriverId) -> usize {
+        self.drivers.binary_search(&driver).expect("the drivers of all measures are here")
+    }
+
     fn instant(&self, driver: DriverId) -> &Instant<'_, Dual<T>> {
-        &self.instants[self.drivers.binary_search(&driver).expect("the drivers of all measures are here")]
+        &self.instants[self.place(driver)].0
+    }
+
+    fn motion(&self, driver: DriverId) -> T {
+        let (instant, motion) = &self.instants[self.place(driver)];
+        *motion.get_or_init(|| motion_of(instant))
     }
 
     /// The value of a measure that depends on a driver; NaN of all others.
@@ -356,8 +369,8 @@ impl<T: Real> DriverAlone<'_, T> {
                     sum
                 };
                 let (of, rate) = (along(*of), along(*over));
-                let moving = [together, opposed].into_iter().flatten().flatten().map(|d| self.instant(*d));
-                let motion = moving.fold(motion_of(first), |sum, instant| sum + motion_of(instant));
+                let others = [together, opposed].into_iter().flatten().flatten();
+                let motion = others.fold(self.motion(*driver), |sum, d| sum + self.motion(*d));
                 // (L_0^n (w, v / L_0))^2 of a measure in m^n, with the size L_0 of the mechanism
                 let size = T::constant(first.fixed.size.powi(model.dimension(*over).length.into()));
                 of / if_moving(rate, motion * (size * size))
