@@ -6,7 +6,10 @@ set -euo pipefail
 cd "$(dirname "$0")"
 
 phase() { # name
-    echo "== $1 (after $((SECONDS / 60)) min $((SECONDS % 60)) s)"
+    times > target/times
+    local cpu
+    cpu=$(awk -F '[ms ]+' 'NR == 2 { printf "%d", 60 * $1 + $2 + 60 * $3 + $4 }' target/times)
+    echo "== $1 (after $((SECONDS / 60)) min $((SECONDS % 60)) s, $cpu CPU seconds)"
 }
 has() { # command
     command -v "$1" >/dev/null
@@ -57,7 +60,24 @@ prepare > target/prepare.log 2>&1 &
 prepared=$!
 trap 'kill $prepared 2>/dev/null || true' EXIT
 
+# Features of the dependencies of some packages.
+features() { # packages
+    cargo tree --prefix none --format '{p} {f}' "$@" | sed 's/ (\*)$//' | sort -u
+}
+# What the README's first command and the wheel ask for is what the tests ask for, so that nothing is compiled twice.
+same_features() {
+    local tests others
+    tests=$(features --workspace)
+    others=$(features --edges normal,build; features --edges normal,build --package hardpoint-python --features shared)
+    if others=$(echo "$others" | grep --line-regexp --fixed-strings --invert-match "$tests"); then
+        echo "these are compiled twice; add the features that the tests ask for to shared/Cargo.toml:" >&2
+        echo "$others" >&2
+        return 1
+    fi
+}
+
 phase "format and lints"
+same_features
 cargo fmt --all --check
 cargo clippy --release --workspace --all-targets --quiet -- -D warnings
 
@@ -80,5 +100,6 @@ PATH="$work/bin:/usr/bin:/bin" pip "$wheel[test]"
 PATH="$work/bin:/usr/bin:/bin" HARDPOINT="$PWD/target/release/hardpoint" "$python" -m pytest -q -p no:cacheprovider python/tests
 
 phase "the page"
-cd web
-npm test
+(cd web && npm test)
+
+phase "all passed"

@@ -214,10 +214,8 @@ def test_a_part_that_kills_its_workers_is_reported(model, tmp_path):
 
 
 def doubled(shared, number):
-    """Enough work to keep several workers busy."""
-    until = time.perf_counter() + 0.005
-    while time.perf_counter() < until:
-        pass
+    """Takes long enough for several workers to be at it."""
+    time.sleep(0.005)
     return shared * number
 
 
@@ -263,16 +261,16 @@ def sweeps(client, count):
 
 
 @pytest.mark.timeout(600 * STRESS)
-def test_hundreds_of_sweeps_beside_another_client(client, here, load):
+def test_many_sweeps_beside_another_client(client, here, load):
     """Each client has an event loop of its own, and a wait for its tasks must use it: elsewhere, wake-ups are lost. By default, the
     loop of the last client is used."""
     with Client(here.cluster) as last:
         assert last.loop is not client.loop
-        sweeps(client, 200)
+        sweeps(client, 50)
 
 
 @pytest.mark.timeout(600 * STRESS)
-def test_hundreds_of_sweeps_while_workers_are_killed(here, load, tmp_path):
+def test_many_sweeps_while_workers_are_killed(here, load, tmp_path):
     # A local cluster gives up workers that are missing in two checks at this interval.
     kept = dask.config.set({"distributed.deploy.lost-worker-timeout": "1 hour"})
     with kept, LocalCluster(
@@ -283,11 +281,11 @@ def test_hundreds_of_sweeps_while_workers_are_killed(here, load, tmp_path):
         killer = threading.Thread(target=killing, args=(cluster, enough, killed))
         killer.start()
         try:
-            sweeps(client, 60)
+            while len(killed) < 3 * STRESS:
+                sweeps(client, 5)
         finally:
             enough.set()
             killer.join()
-        assert len(killed) > 1
 
 
 def test_a_lost_notification_does_not_block(model, alone, here, monkeypatch, tmp_path):

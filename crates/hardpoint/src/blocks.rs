@@ -142,11 +142,36 @@ impl Blocks {
         }
     }
 
+    /// Largest sum of the squares of three adjacent values, the first one of which is this, at the first `steps` output
+    /// times.
+    pub fn largest_square(&self, first: usize, steps: usize) -> f64 {
+        let square = |k: usize| {
+            let row = self.row(k);
+            (0..3).map(|n| row.get(first + n).powi(2)).sum::<f64>()
+        };
+        let larger = |a: f64, b: f64| if b <= a { a } else { b };
+        let whole = match &self.place {
+            BlockLayout::Times(_) => steps / LANES * LANES,
+            BlockLayout::Designs { .. } => 0,
+        };
+        let mut most = [0.0_f64; LANES];
+        for k in (0..whole).step_by(LANES) {
+            let [x, y, z] = [0, 1, 2].map(|n| &self.block(k)[first + n]);
+            for lane in 0..LANES {
+                most[lane] = larger(most[lane], x[lane] * x[lane] + y[lane] * y[lane] + z[lane] * z[lane]);
+            }
+        }
+        (whole..steps).map(square).chain(most).fold(0.0, larger)
+    }
+
     /// Writes values of output time k, starting at `first`.
     #[inline(always)]
     pub fn set(&mut self, k: usize, first: usize, numbers: impl IntoIterator<Item = f64>) {
-        for (lanes, x) in self.block_mut(k)[first..].iter_mut().zip(numbers) {
-            lanes[k % LANES] = x;
+        let (lines, lane) = (&mut self.block_mut(k)[first..], k % LANES);
+        let mut n = 0;
+        for x in numbers {
+            lines[n][lane] = x;
+            n += 1;
         }
     }
 

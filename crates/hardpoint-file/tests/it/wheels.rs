@@ -902,3 +902,101 @@ fn a_run_for_some_outputs_has_the_same_numbers_for_these_and_leaves_out_other_sl
         }
     }
 }
+
+/// Values of the measures of a wheel `w`, or an axle `ax`, over its motion.
+fn columns<'s>(file: &ModelFile, solution: &'s Solution) -> impl Fn(&str) -> Vec<f64> + use<'s> {
+    let names: Vec<String> = file.model.measures.iter().map(|m| m.name.clone()).collect();
+    move |name| {
+        let m = names.iter().position(|other| other == name).unwrap_or_else(|| panic!("{name}"));
+        (0..solution.motion.len()).map(|k| solution.measured.value(k, m)[0]).collect()
+    }
+}
+
+#[test]
+fn a_carrier_that_does_not_turn_has_no_instant_centres_and_no_axes() {
+    // Parallel trailing arms of equal length; both wheels on one axle, as they lie in space.
+    let text = |tilt: f64| {
+        let wheel = |name: &str, y: f64| {
+            format!(
+                "wheels.{name} = {{ body = \"axle\", centre = [-2450, {y}, 0], toe = 0, camber = 0, radius = 310, \
+                 bump = \"q\", steer = \"q\", measures = [\"instant_centre_side_x\", \"instant_centre_side_z\", \
+                 \"instant_centre_front_y\", \"instant_centre_front_z\", \"swing_arm_side\", \"swing_arm_front\", \
+                 \"instant_axis_x\", \"instant_axis_y\", \"instant_axis_z\", \"virtual_caster\", \
+                 \"virtual_kingpin_inclination\", \"virtual_scrub_radius\", \"bump_recession\", \"roll_centre_height\"] }}\n"
+            )
+        };
+        // Both arms go from the same place to the same place, apart.
+        let joints =
+            [(["ground", "lo"], 0.0), (["lo", "axle"], 1.0), (["ground", "up"], 0.0), (["up", "axle"], 1.0)];
+        let joints = joints.into_iter().enumerate().map(|(k, (bodies, end))| {
+            let up = if k < 2 { 0.0 } else { 180.0 };
+            let at = [-2000.0 - 399.0 * end + up / 9.0, 100.0 + 18.7 * end, 20.0 + 60.4 * end + up];
+            format!(
+                "joints.j{k} = {{ type = \"revolute\", bodies = {bodies:?}, at = {at:?}, axis = [{tilt}, 1, 0.02] }}\n"
+            )
+        });
+        format!(
+            "name = \"trailing\"\nunits = {{ length = \"mm\", angle = \"deg\" }}\ntime = {{ end = 1, steps = 8 }}\n\
+             bodies = {{ lo = {{}}, up = {{}}, axle = {{}} }}\ndrivers.q = {{ joint = \"j0\", law = \"15*sin(2*pi*t)\" }}\n\
+             {}{}{}axles.ax = {{ left = \"l\", right = \"r\", measures = [\"axle_roll_centre_y\", \
+             \"axle_roll_centre_height\"] }}\n",
+            joints.collect::<String>(),
+            wheel("l", 700.0),
+            wheel("r", -700.0)
+        )
+    };
+    for tilt in [0.0, 0.05] {
+        let file = parsed(&text(tilt));
+        let solution = solved(&file);
+        let of = columns(&file, &solution);
+        for measure in &file.model.measures {
+            let known = of(&measure.name);
+            let short = measure.name.split('.').nth(1).unwrap();
+            // What is per rise has a value.
+            let expected = ["bump_recession", "roll_centre_height"].contains(&short);
+            assert!(known.iter().all(|x| x.is_finite() == expected), "{} {tilt}: {known:?}", measure.name);
+        }
+    }
+}
+
+#[test]
+fn wheels_lie_down_and_kingpins_do_without_values_there() {
+    // A knuckle turns about the direction of travel until its wheel lies on its side.
+    let text = |kingpin: &str, last: f64| {
+        format!(
+            r#"
+name = "lying"
+units = {{ length = "mm", angle = "deg" }}
+time = {{ at = [0, 0.5, 1] }}
+bodies = {{ knuckle = {{}} }}
+joints.hinge = {{ type = "revolute", bodies = ["ground", "knuckle"], at = [0, 550, 400], axis = [1, 0, 0] }}
+drivers.turn = {{ joint = "hinge", law = "{last}*t" }}
+points = {{ low = {{ body = "knuckle", at = [0, 560, 300] }}, top = {{ body = "knuckle", at = [10, 555, 500] }} }}
+wheels.w = {{ body = "knuckle", centre = [0, 600, 400], radius = 300, toe = 10, camber = 0, kingpin = {kingpin}, measures = ["toe", "camber_front", "steer_angle", "contact_x", "contact_z", "half_track", "scrub_radius", "spindle_offset", "caster_trail", "mechanical_trail", "caster", "kingpin_inclination"] }}
+"#
+        )
+        .replace("toe = 10", if last == 90.0 { "toe = 0" } else { "toe = 10" })
+    };
+    let file = parsed(&text("[\"low\", \"top\"]", 90.0));
+    let solution = solved(&file);
+    let of = columns(&file, &solution);
+    for name in ["toe", "steer_angle", "contact_x", "contact_z", "half_track", "scrub_radius", "caster_trail"]
+    {
+        let [.., half, end] = of(&format!("w.{name}"))[..] else { unreachable!() };
+        assert!(half.is_finite() && end.is_nan(), "{name}: {half} {end}");
+    }
+    // The spin axis is in the front view, upright.
+    assert!((of("w.camber_front")[2].to_degrees() + 90.0).abs() < 1e-9);
+    // A kingpin in the plane across that turns until it is horizontal.
+    let upright = "[{ body = \"knuckle\", at = [0, 560, 300] }, { body = \"knuckle\", at = [0, 560, 500] }]";
+    let file = parsed(&text(upright, -90.0));
+    let solution = solved(&file);
+    let of = columns(&file, &solution);
+    for name in ["scrub_radius", "spindle_offset", "caster_trail", "mechanical_trail"] {
+        let [.., half, end] = of(&format!("w.{name}"))[..] else { unreachable!() };
+        assert!(half.is_finite() && end.is_nan(), "{name}: {half} {end}");
+    }
+    let [.., caster] = of("w.caster")[..] else { unreachable!() };
+    assert!(caster.is_nan(), "seen from the side the kingpin is a point: {caster}");
+    assert!((of("w.kingpin_inclination")[2].to_degrees().abs() - 90.0).abs() < 1e-9);
+}

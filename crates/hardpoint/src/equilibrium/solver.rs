@@ -1,6 +1,7 @@
 //! Equilibria of a mechanism at its output times, by Newton's method on the openings.
 
 use crate::design::{BodyFixed, DesignMap, DesignVelocity};
+use crate::law::Law;
 use crate::linalg::semidefinite::is_definite;
 use crate::linalg::{Elimination, diagonalise};
 use crate::load::{ElementTurns, GivenLoads, OpeningLoads};
@@ -217,7 +218,7 @@ impl<'a> EquilibriumSolver<'a> {
         for (k, target) in targets.into_iter().enumerate() {
             // Where a law turns, a polynomial through equilibria before may lead to another one.
             let prediction = if k == 0 { self.predicted(target) } else { None };
-            certain = match self.follow(one, target, prediction) {
+            certain = match self.follow(one, (target, t), prediction) {
                 Ok(certain) => certain,
                 Err(stop) => return Err(self.undefined_law(one, &stop, t).unwrap_or(stop)),
             };
@@ -268,11 +269,11 @@ impl<'a> EquilibriumSolver<'a> {
     }
 
     /// Follows the equilibrium from the one that was accepted last (or the design configuration without loads) to that
-    /// at time t. Returns true if it is certainly stable.
+    /// at time t, on the way to an output time. Returns true if it is certainly stable.
     fn follow(
         &mut self,
         one: &mut Stepper<'_>,
-        t: f64,
+        (t, output): (f64, f64),
         mut prediction: Option<Prediction>,
     ) -> Result<bool, Box<Stop>> {
         let from = self.last.time;
@@ -296,6 +297,10 @@ impl<'a> EquilibriumSolver<'a> {
                     let reached = (from.is_some() || done == 1.0).then_some(time);
                     let stiffness = Some(self.stiffness.clone());
                     self.last = Accepted { time: reached, part: done, drivers, loads, stiffness };
+                    if time < output {
+                        // Ever shorter steps would follow the law beyond all bounds.
+                        self.unbounded_law(one, time, output).map_or(Ok(()), Err)?;
+                    }
                 }
                 // The same way from the equilibrium that was found last.
                 Err(_) if is_predicted => {}
@@ -675,20 +680,31 @@ impl<'a> EquilibriumSolver<'a> {
         let begin = stop.failed_time;
         // Beyond the shortest step that failed.
         let end = f64::min(begin + 2.0 * SHORTEST * (t - from), t);
+        let has_no_value = |(kind, law): (StopKind, &Law)| {
+            (!law.at(end).value().is_finite()).then(|| self.stop_as(one, kind, begin))
+        };
+        self.laws(one).find_map(has_no_value).or_else(|| self.unbounded_law(one, begin, t))
+    }
+
+    /// The end of the way to the output time t by a law that has grown without bound up to this time.
+    fn unbounded_law(&self, one: &Stepper<'_>, reached: f64, t: f64) -> Option<Box<Stop>> {
+        let from = self.reported.as_ref()?.0;
+        self.laws(one).find_map(|(kind, law)| {
+            let value = |t: f64| law.at(t).value().abs();
+            let nears_pole = value(reached) >= NEARS_POLE * f64::max(value(from), value(t));
+            let pole = if nears_pole { first_undefined(law, [reached, t])? } else { return None };
+            Some(self.stop_as(one, kind, pole))
+        })
+    }
+
+    /// Laws of the drivers that are held and of the loads, each with the end of a motion where it has no value.
+    fn laws<'s>(&'s self, one: &'s Stepper<'_>) -> impl Iterator<Item = (StopKind, &'s Law)> {
         let of_driver =
             |d: &DriverId| (StopKind::LawNotFinite { driver: *d }, one.mechanism.parts.law_of(d.0));
         let of_loads = self.model.elements.iter().enumerate().filter_map(|(e, element)| {
             Some((StopKind::LoadNotFinite { force: ElementId(e) }, element.kind.law(self.model)?))
         });
-        self.held.iter().map(of_driver).chain(of_loads).find_map(|(kind, law)| {
-            let value = |t: f64| law.at(t).value().abs();
-            if !value(end).is_finite() {
-                return Some(self.stop_as(one, kind, begin));
-            }
-            let nears_pole = value(begin) >= NEARS_POLE * f64::max(value(from), value(t));
-            let pole = first_undefined(law, [begin, t]).filter(|_| nears_pole)?;
-            Some(self.stop_as(one, kind, pole))
-        })
+        self.held.iter().map(of_driver).chain(of_loads)
     }
 
     /// Sets the derivatives at the equilibrium that was found last, unless they are set.

@@ -69,6 +69,7 @@ impl MeasureResults {
     ///
     /// Those beyond [`KnownOrders::orders`] are NaN, and so is what has no number at that time: the curvature of a path
     /// where its point rests, the instant centre of a body that does not turn.
+    #[inline]
     pub fn value(&self, k: usize, m: usize) -> [f64; 3] {
         let row = self.values.row(k);
         array(|order| finite(row.get(3 * m + order)))

@@ -34,7 +34,13 @@ pub(crate) struct WheelAt<T> {
 
 /// `atan2(e_x, s e_y)` of the outboard spin axis e of a wheel on side s.
 pub(super) fn toe<T: Real>(e: Vec3<T>, side: T) -> T {
-    e.x.atan2(side * e.y)
+    bearing([e.x, side * e.y], T::one())
+}
+
+/// `atan2(y, x)` of a part [y, x] of a vector with this square; NaN if the part is round-off beside the vector.
+fn bearing<T: Real>([y, x]: [T; 2], square: T) -> T {
+    let is_seen = (y * y + x * x).exceeds(square * T::constant(STILL * STILL));
+    if is_seen { y.atan2(x) } else { T::constant(f64::NAN) }
 }
 
 /// `-asin(e_z)`.
@@ -49,7 +55,7 @@ impl<T: Real> WheelAt<T> {
             WheelMeasure::Toe => toe(self.spin_axis, self.side),
             WheelMeasure::Camber => camber(self.spin_axis),
             // -atan2(e_z, s e_y)
-            WheelMeasure::CamberFront => -self.spin_axis.z.atan2(self.side * self.spin_axis.y),
+            WheelMeasure::CamberFront => -bearing([self.spin_axis.z, self.side * self.spin_axis.y], T::one()),
             // atan2(z . (f_0 x f), f_0 . f)
             WheelMeasure::SteerAngle => {
                 let (d, f) = (design().forward(), self.forward());
@@ -58,12 +64,12 @@ impl<T: Real> WheelAt<T> {
             // atan2(-k_x, k_z)
             WheelMeasure::Caster => {
                 let k = self.along_kingpin();
-                (-k.x).atan2(k.z)
+                bearing([-k.x, k.z], k.dot(k))
             }
             // atan2(-s k_y, k_z)
             WheelMeasure::KingpinInclination => {
                 let k = self.along_kingpin();
-                (-self.side * k.y).atan2(k.z)
+                bearing([-self.side * k.y, k.z], k.dot(k))
             }
             // d(C) . o
             WheelMeasure::ScrubRadius => self.off_kingpin(self.contact()).dot(self.outboard()),
@@ -140,11 +146,11 @@ impl<T: Real> WheelAt<T> {
         Meet { aside: d * y - z * e, z: a * e - d * b, by: a * y - z * b, lengths: lengths[0] * lengths[1] }
     }
 
-    /// Outboard along the ground: the horizontal part of the spin axis, of unit length.
+    /// Outboard along the ground: the horizontal part of the spin axis, of unit length; NaN if the axis is vertical.
     pub fn outboard(&self) -> Vec3<T> {
         // o = (e_x, e_y, 0) / sqrt(e_x^2 + e_y^2)
         let Vec3 { x, y, .. } = self.spin_axis;
-        Vec3::new(x, y, T::zero()) * (T::one() / (x * x + y * y).sqrt())
+        Vec3::new(x, y, T::zero()) * (T::one() / if_moving((x * x + y * y).sqrt(), T::one()))
     }
 
     /// Forward along the ground: where the wheel's plane and the ground meet.
@@ -156,12 +162,12 @@ impl<T: Real> WheelAt<T> {
     }
 
     /// The contact point, the lowest of the wheel: from the centre along the direction in its plane that points most
-    /// downward.
+    /// downward; NaN if its axis is vertical.
     pub fn contact(&self) -> Vec3<T> {
         let e = self.spin_axis;
         // C = W - R u,    u = (z - (z . e) e) / abs(z - (z . e) e)
         let up = Vec3::AXES[2].spread() - e * e.z;
-        self.centre - up * (self.radius / up.norm())
+        self.centre - up * (self.radius / if_moving(up.norm(), T::one()))
     }
 
     fn half_track(&self) -> T {
@@ -178,12 +184,13 @@ impl<T: Real> WheelAt<T> {
         upper - lower
     }
 
-    /// From the kingpin to a point, at the point's height: `P - L - k (P_z - L_z) / k_z`.
+    /// From the kingpin to a point, at the point's height: `P - L - k (P_z - L_z) / k_z`; NaN if the kingpin is
+    /// horizontal.
     fn off_kingpin(&self, p: Vec3<T>) -> Vec3<T> {
         let [lower, upper] = self.kingpin();
         let (d, k) = (p - lower, upper - lower);
         // d(P) = P - L - k (P_z - L_z) / k_z
-        d - k * (d.z / k.z)
+        d - k * (d.z / if_moving(k.z, k.dot(k)))
     }
 
     fn kingpin(&self) -> [Vec3<T>; 2] {
@@ -254,14 +261,14 @@ impl<T: Real> TravellingWheel<T> {
             WheelMeasure::RollCentreHeight => c.y * path.y / self.if_rising(path.z),
             WheelMeasure::RollCentreHeightGeometric => c.y * v.y / self.if_rising(v.z),
             // v + w x (P - C) = 0 in y and z at P_x = C_x:  v_y - w_x (P_z - C_z) = 0,  v_z + w_x (P_y - C_y) = 0
-            WheelMeasure::FrontCentreY => c.y - v.z / seen(w.x, w),
-            WheelMeasure::FrontCentreZ => c.z + v.y / seen(w.x, w),
+            WheelMeasure::FrontCentreY => c.y - v.z / self.seen(w.x),
+            WheelMeasure::FrontCentreZ => c.z + v.y / self.seen(w.x),
             // ... in x and z at P_y = C_y:  v_x + w_y (P_z - C_z) = 0,  v_z - w_y (P_x - C_x) = 0
-            WheelMeasure::SideCentreX => c.x + v.z / seen(w.y, w),
-            WheelMeasure::SideCentreZ => c.z - v.x / seen(w.y, w),
+            WheelMeasure::SideCentreX => c.x + v.z / self.seen(w.y),
+            WheelMeasure::SideCentreZ => c.z - v.x / self.seen(w.y),
             // s (C_y - P_y),  P_x - C_x  of these
-            WheelMeasure::SwingArmFront => side * v.z / seen(w.x, w),
-            WheelMeasure::SwingArmSide => v.z / seen(w.y, w),
+            WheelMeasure::SwingArmFront => side * v.z / self.seen(w.x),
+            WheelMeasure::SwingArmSide => v.z / self.seen(w.y),
             // -l' / W_z'
             WheelMeasure::MotionRatio => {
                 let spring = wheel.spring.expect("a motion ratio is of a wheel that has a spring");
@@ -321,10 +328,24 @@ impl<T: Real> TravellingWheel<T> {
 
     /// A component of the unit vector along the axis that the carrier turns about as the wheel rises: of a right wheel
     /// the opposite, so that both sides are images of each other. It goes through zero with the component, and never
-    /// turns around on the way.
+    /// turns around on the way. NaN if the wheel does not rise or the carrier does not turn.
     fn about(&self, component: T) -> T {
-        let WheelAt { centre, side, .. } = &self.wheel;
-        component * (side.v * centre.z.d.sign() / self.carrier.w.norm())
+        let WheelAt { centre, side, radius, .. } = &self.wheel;
+        let (rise, v, turn) = (self.if_rising(centre.z.d), centre.map(|x| x.d), self.carrier.w.norm());
+        // w R beside W'
+        let turn = if_moving(turn * radius.v, v.dot(v)) / radius.v;
+        component * (side.v * (rise.abs() / rise) / turn)
+    }
+
+    /// A component of the carrier's turn, for division; NaN where an instant centre seen along it is at infinity, and
+    /// where the carrier does not turn.
+    fn seen(&self, component: T) -> T {
+        let (v, r) = (self.wheel.centre.map(|x| x.d), self.wheel.radius.v);
+        let (seen, turn) = (component * r, self.carrier.w * r);
+        // Both conditions in one: each that is recorded costs every step.
+        let turned = turn.dot(turn) * T::constant(AT_INFINITY * AT_INFINITY);
+        let moved = v.dot(v) * T::constant(STILL * STILL);
+        if (seen * seen).exceeds(turned + moved) { component } else { T::constant(f64::NAN) }
     }
 
     /// `X_x' / X_z'` of the point X at which the tyre's force acts on the carrier while it is held, v the velocity of
@@ -353,7 +374,7 @@ impl<T: Real> TravellingWheel<T> {
         let WheelAt { centre, spin_axis, radius, side, .. } = &self.wheel;
         // P = C + w x v / w^2 moves along w alone;  k = w / w_z points up
         let foot = c + w.cross(v) * (T::one() / w.dot(w));
-        let up = w * (T::one() / seen(w.z, w));
+        let up = w * (T::one() / self.seen(w.z));
         WheelAt {
             centre: centre.map(|x| x.v),
             spin_axis: spin_axis.map(|x| x.v),
@@ -370,21 +391,12 @@ impl<T: Real> TravellingWheel<T> {
 /// metres away, on one side now and on the other a moment later.
 const AT_INFINITY: f64 = 1e-2;
 
-/// A component of a turn, for division; NaN where an instant centre seen along it is at infinity.
-fn seen<T: Real>(component: T, turn: Vec3<T>) -> T {
-    // A recording assumes a nonzero turn, and records this condition as a limit.
-    if component.abs().exceeds(turn.norm() * T::constant(AT_INFINITY)) {
-        component
-    } else {
-        T::constant(f64::NAN)
-    }
-}
-
-/// Largest rate of a measure along a driver, relative to the motion of the bodies, that is round-off: ten times the
-/// relative error of a position.
+/// Largest rate of a measure along a driver, relative to the motion of the bodies, that is round-off, and largest
+/// component of a unit vector that is: ten times the relative error of a position.
 const STILL: f64 = 1e-11;
 
-/// A rate along a driver, for division; NaN if it is round-off beside the motion with this square.
+/// A rate along a driver, or a component, for division; NaN if it is round-off beside the motion, or the vector, with
+/// this square.
 pub(super) fn if_moving<T: Real>(rate: T, motion: T) -> T {
     let moves = (rate * rate).exceeds(motion * T::constant(STILL * STILL));
     if moves { rate } else { T::constant(f64::NAN) }
@@ -411,8 +423,11 @@ pub(super) fn axle_roll_centre<T: Real>(wheels: [TravellingWheel<T>; 2]) -> (T, 
         ([contact.y.v, contact.z.v], along)
     });
     let cross = |a: [T; 2], b: [T; 2]| a[0] * b[1] - a[1] * b[0];
+    let square = |a: [T; 2]| a[0] * a[0] + a[1] * a[1];
+    // Parallel lines meet at infinity.
+    let apart = if_moving(cross(a, b), square(a) * square(b));
     // p + way a = q + other b,  times b:  way = (q - p) x b / (a x b)
-    let way = cross([q[0] - p[0], q[1] - p[1]], b) / cross(a, b);
+    let way = cross([q[0] - p[0], q[1] - p[1]], b) / apart;
     let ground = (p[1] + q[1]) * T::constant(0.5);
     (p[0] + way * a[0], p[1] + way * a[1] - ground)
 }

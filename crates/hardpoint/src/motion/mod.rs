@@ -83,6 +83,8 @@ impl BodyState {
     };
     /// Number of values.
     pub(crate) const NUMBERS: usize = 24;
+    /// Place of the angular velocity among these.
+    const OMEGA: usize = 15;
 
     /// Position and orientation.
     #[inline]
@@ -193,6 +195,14 @@ impl<'m> States<'m> {
         BodyState::from(|k| self.row.get(BodyState::NUMBERS * (b - 1) + k))
     }
 
+    /// Angular velocity of body b.
+    #[inline]
+    pub(crate) fn omega(self, b: usize) -> Vec3 {
+        let Some(others) = b.checked_sub(1) else { return Vec3::ZERO };
+        let first = BodyState::NUMBERS * others + BodyState::OMEGA;
+        Vec3::new(self.row.get(first), self.row.get(first + 1), self.row.get(first + 2))
+    }
+
     /// States, body by body.
     pub fn iter(self) -> impl Iterator<Item = BodyState> + 'm {
         (0..self.bodies).map(move |b| self.body(b))
@@ -252,6 +262,12 @@ impl Motion {
     /// Minimum margin of the motion, and its output time.
     pub fn least_margin(&self) -> Option<(usize, Margin)> {
         self.margins.iter().copied().enumerate().min_by(|a, b| a.1.value.total_cmp(&b.1.value))
+    }
+
+    /// Greatest angular speed of a body at any output time, rad/s.
+    pub(crate) fn fastest(&self, body: BodyId) -> f64 {
+        let Some(others) = body.0.checked_sub(1) else { return 0.0 };
+        self.states.largest_square(BodyState::NUMBERS * others + BodyState::OMEGA, self.len()).sqrt()
     }
 
     /// States of all bodies at output time k.

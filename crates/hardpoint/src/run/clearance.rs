@@ -16,7 +16,7 @@ use crate::space::Vec3;
 
 use super::curve::SampledCurve;
 use super::joint_limits::MovingEnd;
-use super::metric::metric_number;
+use super::metric::reaches;
 use super::{Analysis, Run, Solution};
 
 /// A minimum or contact is located if a step of Newton's method is below this fraction of the motion: positions are
@@ -321,12 +321,12 @@ impl Analysis<'_> {
             if metric.take != Reduction::Least || metric.window.is_some() || measures.contains(&metric.of) {
                 continue;
             }
-            let least = metric_number(metric, solution).unwrap_or(f64::NEG_INFINITY);
             let own = || model.clearances[of.0].pairs.iter().map(|pair| pair.shapes);
             let turns: Vec<f64> = own().flat_map(|shapes| posed.turning_times(shapes)).collect();
             // Where cores meet, the distance may have no rates, or minima at which they jump.
-            let is_hidden =
-                |shapes: [ShapeId; 2]| has_surface(model, shapes) || least <= -posed.round(shapes);
+            let is_hidden = |shapes: [ShapeId; 2]| {
+                has_surface(model, shapes) || reaches(metric, solution, -posed.round(shapes))
+            };
             if model.equilibrium.is_some() || !turns.is_empty() || own().any(is_hidden) {
                 measures.push(metric.of);
                 times.extend(turns);
@@ -567,6 +567,15 @@ impl<'m> PosedMotion<'m> {
     /// Times between those of the motion, between which the bodies of two shapes do not turn far.
     fn turning_times(&self, shapes: [ShapeId; 2]) -> Vec<f64> {
         let bodies = self.carriers(shapes);
+        let longest = self.motion.times.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
+        // Relative to the first one each turns by no more than both.
+        let fastest = |body: &BodyId| self.motion.fastest(*body);
+        let relative = bodies.first().map_or(0.0, |first| {
+            bodies[1..].iter().map(|other| fastest(other) + fastest(first)).sum::<f64>()
+        });
+        if longest * relative <= FAR {
+            return Vec::new();
+        }
         let speeds: Vec<f64> = (0..self.motion.len()).map(|k| self.turning(&bodies, k)).collect();
         turning_times(&self.motion.times, &speeds)
     }
@@ -585,7 +594,8 @@ impl<'m> PosedMotion<'m> {
     /// Angular speed of bodies relative to each other at time k, rad/s.
     fn turning(&self, bodies: &[BodyId], k: usize) -> f64 {
         let Some((first, others)) = bodies.split_first() else { return 0.0 };
-        let spin = |body: &BodyId| self.motion.at(k).body(body.0).omega;
+        let states = self.motion.at(k);
+        let spin = |body: &BodyId| states.omega(body.0);
         let first = spin(first);
         // Of two others at most the sum.
         others.iter().map(|other| (spin(other) - first).norm()).sum()

@@ -79,6 +79,21 @@ pub fn metric_number(metric: &Metric, solution: &Solution) -> Option<f64> {
     take(metric, &y, &x).map(|(value, _)| value)
 }
 
+/// True if the least value of a curve may be this one or less.
+pub(super) fn reaches(metric: &Metric, solution: &Solution, value: f64) -> bool {
+    let Some((m, orders, _)) = column(&solution.measured, metric.of) else { return true };
+    let times = &solution.motion.times;
+    let length = |k: usize| times.get(k + 1).map_or(0.0, |after| after - times[k]);
+    // Bernstein coefficients of the polynomials:  y,  y +- h y. / 5,  y +- 2 h y. / 5 + h^2 y.. / 20
+    let is_above = |k: usize| {
+        let h = f64::max(length(k), k.checked_sub(1).map_or(0.0, length));
+        let [y, rate, acceleration] = solution.measured.value(k, m);
+        y - h * (0.4 * rate.abs() + 0.05 * h * acceleration.abs()) > value
+    };
+    let is_surely_above = orders == 3 && (0..times.len()).all(is_above);
+    !is_surely_above && metric_number(metric, solution).is_none_or(|least| least <= value)
+}
+
 /// Returns the index of a metric of the whole model among the metrics of one of its motions ([`Model::motions`]);
 /// `None` if the metric is taken of another motion.
 pub fn place_of(model: &Model, metric: usize, number: usize) -> Option<usize> {

@@ -64,9 +64,17 @@ const CRATES: &[(&str, &[&str])] = &[
     ),
     ("hardpoint-engine", &["hardpoint-studio"]),
     ("hardpoint-bench", &["hardpoint", "hardpoint-file"]),
+    ("hardpoint-shared", &[]),
     (
         "hardpoint-python",
-        &["hardpoint", "hardpoint-cli", "hardpoint-file", "hardpoint-report", "hardpoint-study"],
+        &[
+            "hardpoint",
+            "hardpoint-cli",
+            "hardpoint-file",
+            "hardpoint-report",
+            "hardpoint-shared",
+            "hardpoint-study",
+        ],
     ),
     ("hardpoint-studio", &["hardpoint", "hardpoint-file", "hardpoint-report", "hardpoint-study"]),
 ];
