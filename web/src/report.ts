@@ -306,8 +306,8 @@ export function ranking(report: Report, quantity: Quantity, order: Order): Map<s
   const byUnit = new Map<string, RankedVariable[]>()
   for (const variable of report.variables) {
     const sensitivity = variable.sensitivities.get(quantity.index)
-    // Of body origins, velocities and accelerations may be left out.
-    if (!sensitivity || sensitivity.curves[order].length === 0) continue
+    // Of body origins, velocities and accelerations may be left out; a curve without numbers is not known.
+    if (!sensitivity?.curves[order].some(Number.isFinite)) continue
     const peers = byUnit.get(variable.unit) ?? []
     byUnit.set(variable.unit, peers)
     peers.push({ variable, sensitivity, peak: sensitivity.peaks[order], share: 0 })

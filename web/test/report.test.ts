@@ -65,6 +65,12 @@ test('where nothing has an influence no share is given', () => {
   ).toEqual([0, 0])
 })
 
+test('a variable by which there is no derivative is not ranked', () => {
+  const variables = [variable('known', 'mm', 1), variable('unknown', 'mm', NaN)]
+  const ranks = ranking(read({ ...payload, variables }, decode), hub, 0)
+  expect([...ranks.values()].flat().map(({ variable }) => variable.name)).toEqual(['known'])
+})
+
 test('measures are offered before other quantities', () => {
   expect(groups(report).map(([name]) => name)).toEqual(['measure', 'point'])
 })

@@ -688,7 +688,7 @@ fn largest(summary: &Summary) -> Option<Table> {
     for ranking in summary.sensitivities.iter().filter(|r| r.order == "value") {
         let mut name = ranking.measure.clone();
         if ranking.largest.is_empty() {
-            rows.push(vec![name, "no variable moves it".into(), String::new(), String::new()]);
+            rows.push(vec![name, ranking.without_influence(), String::new(), String::new()]);
             continue;
         }
         for (k, r) in ranking.largest.iter().enumerate() {

@@ -184,9 +184,12 @@ fn facts_text(facts: &WhatIfFacts, wanted: &dyn Fn(&str) -> bool) -> String {
     for measure in facts.ranked().into_iter().filter(|m| wanted(m)) {
         let ranking = facts.ranking(measure, SHOWN);
         out += &match ranking.rows.is_empty() {
-            true => format!("\n{}\n  {}\n", ranking.title, ranking.note),
+            true => format!("\n{}\n", ranking.title),
             false => text::section(&ranking),
         };
+        if !ranking.note.is_empty() {
+            out += &format!("  {}\n", ranking.note);
+        }
     }
     out
 }

@@ -223,7 +223,8 @@ impl MarginCourse {
                 (self.start, self.span[0]) = (Some(margin), t);
             }
             // Of equal periods the first has the minimum, independent of round-off. NaN is the minimum.
-            if self.least.is_none_or(|(least, _)| !(margin.value >= least.value * (1.0 - AS_LARGE))) {
+            let stays = |least: f64| least.is_nan() || margin.value >= least * (1.0 - AS_LARGE);
+            if !self.least.is_some_and(|(least, _)| stays(least.value)) {
                 self.least = Some((margin, t));
             }
             self.span[1] = t;
@@ -233,8 +234,8 @@ impl MarginCourse {
 
 impl Peak {
     fn add(&mut self, d: f64, t: f64) {
-        let most = self.near.last().map_or(0.0, |(d, _)| d.abs());
-        if d.abs() > most * (1.0 + SAME) {
+        // The first number counts, even if it is zero: without any, the derivative is not known.
+        if self.near.last().map_or(!d.is_nan(), |(most, _)| d.abs() > most.abs() * (1.0 + SAME)) {
             self.near.push((d, t));
             self.near.retain(|(near, _)| near.abs() >= d.abs() * (1.0 - AS_LARGE));
         }

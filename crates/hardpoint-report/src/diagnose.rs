@@ -36,6 +36,7 @@ pub fn all(file: &ModelFile, summary: &Summary, course: &Course, outputs: Option
     let mut list = file.remarks.clone();
     list.extend(rigid(file, &summary.model));
     list.extend(variables(file, &summary.model));
+    list.extend(ambiguous_assembly(file, course));
     // Before a limit position the margin falls to zero, which the stop reports already.
     if ended.as_ref().is_none_or(|s| s.kind == StopKind::Interrupted) {
         list.extend(summary.margin.as_ref().and_then(|m| margin(file, m)));
@@ -120,7 +121,7 @@ fn ended(file: &ModelFile, stop: &Stop, who: &str, left: Vec<String>) -> Diagnos
     let (model, units) = (&file.model, file.units);
     let joint_name = |j: &JointId| model.joints[j.0].name.as_str();
     let place = match stop.kind {
-        StopKind::Locked { joint, .. } => Some((Section::Joints, joint.0)),
+        StopKind::Locked { joint, .. } | StopKind::CurveEnd { joint } => Some((Section::Joints, joint.0)),
         StopKind::LawNotFinite { driver } => Some((Section::Drivers, driver.0)),
         StopKind::LoadNotFinite { force } => {
             // The elements are the masses, then the forces.
@@ -272,6 +273,29 @@ fn rigid(file: &ModelFile, facts: &Facts) -> Option<Diagnostic> {
             "if it is meant to move, make its axes exactly parallel or give one of these joints more freedom, and add a driver",
         )
     })
+}
+
+/// Warning if several assemblies are equally near to a singular design configuration, so that it does not decide.
+fn ambiguous_assembly(file: &ModelFile, course: &Course) -> Option<Diagnostic> {
+    let assembly = course.kept.motion.assembly.as_ref().filter(|assembly| assembly.equally_near > 1)?;
+    let place = assembly.gaps.iter().find_map(|gap| match gap.of {
+        Closing::Joint(j) => Some((Section::Joints, j.0)),
+        Closing::Driver(_) | Closing::Coupler(_) => None,
+    });
+    let message = format!(
+        "the design configuration does not decide between {} assemblies that are equally near",
+        assembly.equally_near
+    );
+    let moved = assembly.moved.iter().map(|m| file.model.bodies[m.body.0].name.as_str());
+    let d = file.diagnostic(Severity::Warning, "HP0413", message, place);
+    Some(
+        d.note(format!(
+            "in the design configuration the mechanism is open and in a singular position, such as bars in line; {} may move to either side",
+            names(moved)
+        ))
+        .note("one of them is taken; which one depends on how the model lies in the global axes")
+        .help("move a hardpoint a little out of the line, to the side that you mean, or write a `[start]`"),
+    )
 }
 
 /// Warning if constraint residuals are too large for the dimensions of the mechanism.

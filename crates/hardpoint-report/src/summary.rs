@@ -188,6 +188,8 @@ pub struct Ranking {
     pub order: &'static str,
     /// Sensitivities above round-off.
     pub largest: Vec<RankedVariable>,
+    /// Variables by which it has no derivative at any output time.
+    pub unknown: Vec<String>,
 }
 
 /// Largest sensitivity of a measure to one variable over the motion.
@@ -292,10 +294,13 @@ fn rankings(model: &Model, units: Units, course: &Course) -> Vec<Ranking> {
         for (order, name) in
             ["value", "rate", "acceleration"].into_iter().enumerate().take(output.known.orders)
         {
-            let mut largest = Vec::new();
+            let (mut largest, mut unknown) = (Vec::new(), Vec::new());
             for (b, variable) in model.variables.iter().enumerate().filter(|(b, _)| course.follows(*b)) {
                 let unit = variable_unit(model, units, variable);
-                let Some((most, time)) = course.largest(m, order, b) else { continue };
+                let Some((most, time)) = course.largest(m, order, b) else {
+                    unknown.push(variable.name.clone());
+                    continue;
+                };
                 if most.abs() <= round_off.of(b, output.dimension, order) {
                     continue;
                 }
@@ -313,10 +318,20 @@ fn rankings(model: &Model, units: Units, course: &Course) -> Vec<Ranking> {
                 (kinds.iter().position(|unit| *unit == r.per).unwrap_or(kinds.len()), r.per.clone())
             };
             largest.sort_by(|a, b| kind(a).cmp(&kind(b)).then(b.value.abs().total_cmp(&a.value.abs())));
-            rankings.push(Ranking { measure: output.name.clone(), order: name, largest });
+            rankings.push(Ranking { measure: output.name.clone(), order: name, largest, unknown });
         }
     }
     rankings
+}
+
+impl Ranking {
+    /// Remark on a measure without influential variables.
+    pub fn without_influence(&self) -> String {
+        match self.unknown.is_empty() {
+            true => "no variable moves it".into(),
+            false => format!("no derivative by {}", some_of(&self.unknown, ", ")),
+        }
+    }
 }
 
 /// Driver positions at a stop: `, with \`rack\` at 12.3 mm and ...`.

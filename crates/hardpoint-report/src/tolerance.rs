@@ -205,7 +205,8 @@ record! {
         let mut why = Vec::new();
         if found.is_nonlinear(k) {
             match of.nonlinearity() {
-                None => why.push("second derivatives are unknown".to_owned()),
+                _ if of.sigma.is_nan() => why.push("it has no derivatives".to_owned()),
+                None => why.push("second derivatives are unknown".into()),
                 Some(part) if part.is_infinite() => why.push("sigma has no first-order part".into()),
                 Some(part) if part > NONLINEAR => {
                     why.push(format!("the second-order part is {} of sigma", percent(part)))
@@ -332,8 +333,8 @@ record! {
     min: Option<f64> = limit.least.map(shown);
     /// Upper end.
     max: Option<f64> = limit.most.map(shown);
-    /// Yield of a normal distribution with the moments from derivatives, 0 to 1.
-    by_moments: f64 = found.by_moments;
+    /// Yield of a normal distribution with the moments from derivatives, 0 to 1; `null` if there are no derivatives.
+    by_moments: Option<f64> = found.by_moments;
     /// Yield of the sampled designs, 0 to 1.
     sampled: Option<f64> = found.sampled.map(Yield::part);
     /// Standard error of `sampled`.
@@ -355,6 +356,9 @@ record! {
             Some(AllocationError::NoLimits) => "there is no limit to keep".into(),
             Some(AllocationError::NominalExceeds(k)) => {
                 format!("limit `{}` is violated by the nominal design: change the design first", name(k))
+            }
+            Some(AllocationError::NoDerivatives(k)) => {
+                format!("the metric of limit `{}` has no derivatives: leave out the limit", name(k))
             }
             Some(AllocationError::Fixed(k)) => {
                 format!("tolerances without a cost exhaust the room of limit `{}`: give them one", name(k))
@@ -823,7 +827,7 @@ impl ToleranceFacts {
                 ("at least", &|l| optional(l.min, &l.unit)),
                 ("at most", &|l| optional(l.max, &l.unit)),
                 ("sampled", &|l| l.sampled.zip(l.error).map_or("-".into(), |(p, e)| yield_text(p, e))),
-                ("by moments", &|l| percent(l.by_moments)),
+                ("by moments", &|l| l.by_moments.map_or("-".into(), percent)),
             ],
             &self.limits,
         );
@@ -872,6 +876,8 @@ impl SpreadFact {
         match (self.told_by, &self.sampled) {
             (SpreadModel::Sampled, Some(s)) => [Some(s.mean), Some(s.sigma)],
             (SpreadModel::SecondOrder, _) => [self.mean, self.sigma],
+            // Without derivatives neither is known.
+            (SpreadModel::Linear | SpreadModel::Sampled, _) if self.rss.is_nan() => [None; 2],
             (SpreadModel::Linear | SpreadModel::Sampled, _) => {
                 [self.mean.or(Some(self.nominal)), Some(self.rss)]
             }

@@ -16,7 +16,7 @@ use crate::GENERATOR;
 use crate::columns;
 use crate::course::{MarginCourse, RoundOff};
 use crate::diagnose::out_of_bounds;
-use crate::figures::{names, number, per, rounded, unit, variable_unit, with_unit};
+use crate::figures::{names, number, per, rounded, some_of, unit, variable_unit, with_unit};
 use crate::margin::MarginFact;
 use crate::metric::MetricChange;
 use crate::page::{Payload, StudyTables, Table};
@@ -45,6 +45,8 @@ pub struct WhatIfFacts {
     pub metrics: Vec<MetricChange>,
     /// Most influential variables of each measure.
     pub influence: Vec<InfluenceFact>,
+    /// Measures without a derivative by some variables.
+    pub unknown: Vec<UnknownInfluence>,
     /// Output times, s.
     pub times: Vec<f64>,
     /// Further diagnostics: of the file, and of changes beyond the bounds of their variables.
@@ -92,6 +94,7 @@ record! {
         };
         let change = steps()
             .map(|k| (what_if.exact(k, m) - measured.value(k, m)[0], k))
+            .filter(|(change, _)| change.is_finite())
             .max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
     }
     /// Name of the measure.
@@ -105,6 +108,9 @@ record! {
     /// Largest errors of the first-order and of the second-order prediction; `null` if unknown, for example for a
     /// velocity.
     errors: Option<[Option<f64>; 2]> = quality.map(|f| f.errors.map(|e| e.map(shown)));
+    /// Number of output times without a prediction, since the measure has no derivatives there; `errors` are those of
+    /// the others.
+    unpredicted: Option<usize> = quality.map(|f| f.unpredicted);
     /// Factor by which the change can be scaled before its second-order part reaches 5 % of its first-order part;
     /// `null` if the measure is exactly linear along the change, or does not change to first order.
     linear_up_to: Option<f64> = quality.and_then(|f| f.linear_up_to).filter(|x| x.is_finite());
@@ -146,6 +152,15 @@ record! {
     tolerance: Option<f64> = variable.tolerance.map(|t| units.from_si(output.dimension, (t * most).abs()));
 }
 
+/// Variables whose influence on a measure is unknown.
+#[derive(Clone, Debug, Serialize)]
+pub struct UnknownInfluence {
+    /// Name of the measure.
+    pub measure: String,
+    /// Variables by which it has no derivative at any output time.
+    pub variables: Vec<String>,
+}
+
 impl WhatIfFacts {
     /// Adds the effects of a change on the design.
     pub fn changed(self, file: &ModelFile, topology: &Topology, what_if: &WhatIf) -> Self {
@@ -170,6 +185,7 @@ impl WhatIfFacts {
 
     /// Ranking of the variables only, for a model whose design is not changed.
     pub fn of_today(file: &ModelFile, topology: &Topology, today: &Solution) -> Self {
+        let (influence, unknown) = influence(&file.model, file.units, today);
         Self {
             generator: GENERATOR,
             name: file.model.name.clone(),
@@ -189,7 +205,8 @@ impl WhatIfFacts {
             ],
             measures: Vec::new(),
             metrics: Vec::new(),
-            influence: influence(&file.model, file.units, today),
+            influence,
+            unknown,
             times: today.motion.times.clone(),
             diagnostics: file.remarks.clone(),
         }
@@ -205,9 +222,13 @@ impl WhatIfFacts {
         let range = |x: &[f64]| {
             let low = x.iter().copied().fold(f64::INFINITY, f64::min);
             let high = x.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            if x.is_empty() { "-".into() } else { format!("{} to {}", number(low), number(high)) }
+            if low <= high { format!("{} to {}", number(low), number(high)) } else { "-".into() }
         };
         let some = |x: Option<f64>| x.map_or("-".into(), |x| format!("{} ", rounded(x, 3)));
+        let unpredicted = |m: &MeasureFact| match m.unpredicted {
+            Some(times) if times > 0 => format!("at {times} of {} times", m.today.len()),
+            Some(_) | None => String::new(),
+        };
         let linear = |m: &MeasureFact| match m.linear_up_to {
             Some(x) => format!("{} x", rounded(x, 2)),
             None => if m.exactly_linear { "exactly linear" } else { "-" }.into(),
@@ -225,10 +246,12 @@ impl WhatIfFacts {
                 ("at t", &|m| m.time.map_or("-".into(), |t| format!("{} s", number(t)))),
                 ("error of 1st order", &|m| some(m.errors.and_then(|e| e[0]))),
                 ("error of 2nd order", &|m| some(m.errors.and_then(|e| e[1]))),
+                ("not predicted", &|m| unpredicted(m)),
                 ("linear range", &|m| linear(m)),
             ],
             self.measures.iter().filter(|m| wanted(&m.measure)),
         )
+        .without_empty_columns()
     }
 
     /// Most influential variables of a measure, the largest first; at most `shown` of each unit, without those that
@@ -243,7 +266,13 @@ impl WhatIfFacts {
         });
         let of_unit = |unit| of_measure().filter(move |i| i.per == unit).take(shown).enumerate();
         let rows: Vec<_> = units.into_iter().flat_map(of_unit).collect();
-        let note = if rows.is_empty() { "No variable moves it." } else { "" };
+        let unknown = self.unknown.iter().find(|u| u.measure == measure);
+        let unknown = unknown.map_or(&[][..], |u| &u.variables);
+        let note = match (rows.is_empty(), unknown.is_empty()) {
+            (_, false) => format!("No derivative by {}.", some_of(unknown, ", ")),
+            (true, true) => "No variable moves it.".into(),
+            (false, true) => String::new(),
+        };
         let optional = |x: Option<f64>, sign: &str, unit: &str| {
             x.map_or(String::new(), |x| format!("{sign}{}", with_unit(x, unit)))
         };
@@ -262,9 +291,10 @@ impl WhatIfFacts {
     /// Names of the ranked measures, each once.
     pub fn ranked(&self) -> Vec<&str> {
         let mut names: Vec<&str> = Vec::new();
-        for i in &self.influence {
-            if names.last() != Some(&i.measure.as_str()) {
-                names.push(&i.measure);
+        let known = self.influence.iter().map(|i| i.measure.as_str());
+        for measure in known.chain(self.unknown.iter().map(|u| u.measure.as_str())) {
+            if !names.contains(&measure) {
+                names.push(measure);
             }
         }
         names
@@ -356,10 +386,11 @@ pub(crate) fn follows(model: &Model, what_if: &WhatIf) -> String {
 }
 
 /// Influence of every variable on every measure (or every point, if there are no measures), the largest first within
-/// each. A variable with two names is ranked once, and effects that are round-off are left out.
-fn influence(model: &Model, units: Units, today: &Solution) -> Vec<InfluenceFact> {
+/// each. A variable with two names is ranked once, and effects that are round-off are left out. Then the measures with
+/// the variables by which they have no derivative.
+fn influence(model: &Model, units: Units, today: &Solution) -> (Vec<InfluenceFact>, Vec<UnknownInfluence>) {
     let measured = &today.measured;
-    let mut facts = Vec::new();
+    let (mut facts, mut without) = (Vec::new(), Vec::new());
     let counts =
         |source: &OutputSource| model.measures.is_empty() || matches!(source, OutputSource::Measure(_));
     let measures = measured.outputs.iter().enumerate().filter(|(_, o)| counts(&o.source));
@@ -367,19 +398,25 @@ fn influence(model: &Model, units: Units, today: &Solution) -> Vec<InfluenceFact
     let repeated: Vec<bool> = variables().map(|v| repeats_coordinate(model, v)).collect();
     let round_off = RoundOff::new(model, Magnitude::of_motion(model, &today.motion));
     for (m, output) in measures {
-        let first = facts.len();
+        let (first, mut variables) = (facts.len(), Vec::new());
         for (v, variable) in model.variables.iter().enumerate() {
             if measured.is_empty() || today.sensitivities.at(0, v).is_none() || repeated[v] {
                 continue;
             }
             let at = |k: &usize| measured.d(*k, VariableId(v), m)[0];
             let known = (0..measured.len()).filter(|k| at(k).is_finite());
-            let Some(k) = known.max_by(|a, b| at(a).abs().total_cmp(&at(b).abs())) else { continue };
+            let Some(k) = known.max_by(|a, b| at(a).abs().total_cmp(&at(b).abs())) else {
+                variables.push(variable.name.clone());
+                continue;
+            };
             let moves = at(&k).abs() > round_off.of(v, output.dimension, 0);
             let most = if moves { at(&k) } else { 0.0 };
             facts.push(InfluenceFact::of(model, units, output, variable, most, today.motion.times[k]));
         }
         facts[first..].sort_by(|a, b| b.largest.abs().total_cmp(&a.largest.abs()));
+        if !variables.is_empty() {
+            without.push(UnknownInfluence { measure: output.name.clone(), variables });
+        }
     }
-    facts
+    (facts, without)
 }

@@ -1,7 +1,8 @@
 //! Comparison of exact sensitivities with differences of re-solved designs, quantity by quantity.
 
-use hardpoint::model::{BodyId, Dimension, Model, OutputSource};
-use hardpoint::run::Solution;
+use hardpoint::measure::clearances_of;
+use hardpoint::model::{BodyId, Dimension, Model, OutputSource, VariableId};
+use hardpoint::run::{Solution, tied_clearances};
 use hardpoint::sensitivity::BodySensitivity;
 use hardpoint::space::Vec3;
 
@@ -72,7 +73,7 @@ impl Comparison {
     /// hardly any effect, it is relative to the sensitivity that would change the motion by one part in a thousand per
     /// natural step.
     pub fn of(model: &Model, solution: &Solution, d: &Difference) -> Self {
-        Self::where_decided(model, solution, d, &UndecidedOutputs::default())
+        Self::where_decided(model, solution, d, &UndecidedOutputs::undefined(model, solution, d.variable))
     }
 
     /// Compares as [`Comparison::of`], but skips outputs at times at which the differences are undecided.
@@ -179,7 +180,7 @@ impl Comparison {
     }
 }
 
-/// Outputs and times at which finite differences cannot decide whether a derivative is right.
+/// Outputs and times at which there is no derivative, or finite differences cannot decide whether it is right.
 #[derive(Clone, Debug, Default)]
 pub(super) struct UndecidedOutputs {
     /// `[k * columns + m]`; empty if all are decided.
@@ -192,9 +193,27 @@ pub(super) struct UndecidedOutputs {
 const KINK: f64 = 1e-4;
 
 impl UndecidedOutputs {
+    /// Outputs that have a value and no derivative by a variable: where features of shapes are equally deep in each
+    /// other at an equilibrium. Along a motion such outputs have no rates either, which shows it.
+    pub fn undefined(model: &Model, solution: &Solution, variable: VariableId) -> Self {
+        if model.equilibrium.is_none() || model.clearances.is_empty() {
+            return Self::default();
+        }
+        let (measured, clearances) = (&solution.measured, model.clearances.len());
+        let columns = measured.outputs.len();
+        let tied = tied_clearances(model, &solution.motion);
+        let of: Vec<_> = measured.outputs.iter().map(|output| clearances_of(model, output.source)).collect();
+        let undefined = |place: usize| {
+            let (k, m) = (place / columns, place % columns);
+            of[m].iter().any(|c| tied[k * clearances + c.0])
+                && measured.derivative(k, variable, m, 0).is_nan()
+        };
+        Self { places: (0..columns * solution.motion.len()).map(undefined).collect(), columns }
+    }
+
     /// Decides from the difference with the finest step. Undecided are magnitudes that reach zero within the step,
-    /// where `abs(v)` has a kink and no derivative at v = 0, and outputs without a value in a moved design. All are
-    /// decided if there is no difference.
+    /// where `abs(v)` has a kink and no derivative at v = 0, outputs without a value in a moved design, and those that
+    /// are [undefined](Self::undefined). All are decided if there is no difference.
     pub fn by(model: &Model, solution: &Solution, finest: Option<&Difference>) -> Self {
         let Some(d) = finest else { return Self::default() };
         let measured = &solution.measured;
@@ -209,9 +228,10 @@ impl UndecidedOutputs {
         };
         let sources: Vec<Vec<usize>> =
             (0..columns).map(|m| measures_of(model, measured.outputs[m].source)).collect();
+        let undefined = Self::undefined(model, solution, d.variable);
         let undecided = |place: usize| {
             let (k, m) = (place / columns, place % columns);
-            d.outputs[place][0].is_nan() || sources[m].iter().any(|m| kinked(k, *m))
+            d.outputs[place][0].is_nan() || undefined.at(k, m) || sources[m].iter().any(|m| kinked(k, *m))
         };
         Self { places: (0..columns * solution.motion.len()).map(undecided).collect(), columns }
     }
@@ -314,9 +334,9 @@ impl<'a> ComparisonBuilder<'a> {
     }
 
     fn push(&mut self, quantity: String, scale: f64, deviations: impl Iterator<Item = f64>) {
-        let (row, most) = deviations.enumerate().fold((0, 0.0), |best, (row, x)| {
-            // A NaN deviation must be selected.
-            if !(x <= best.1) { (row, x) } else { best }
+        let (row, most) = deviations.enumerate().fold((0, 0.0_f64), |best, (row, x)| {
+            // A NaN deviation must be selected, and stay.
+            if best.1.is_nan() || x <= best.1 { best } else { (row, x) }
         });
         let error = if most == 0.0 { 0.0 } else { most / scale };
         let error = if error.is_nan() { f64::INFINITY } else { error };

@@ -116,6 +116,7 @@ pub(crate) fn failure_reason(stop: &Stop, model: &Model) -> String {
     let kind = match stop.kind {
         StopKind::LimitLoad { .. } => StopKind::LimitLoad { part: 0.0 },
         kind @ (StopKind::Limit
+        | StopKind::CurveEnd { .. }
         | StopKind::BranchChange
         | StopKind::DoesNotAssemble
         | StopKind::Locked { .. }

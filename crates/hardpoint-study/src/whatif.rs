@@ -40,9 +40,12 @@ pub struct WhatIf {
 pub struct PredictionQuality {
     /// Largest exact change over the motion, and the index of its output time.
     pub change: (f64, usize),
-    /// Largest errors of the first-order and of the second-order prediction. The latter is known for outputs that
-    /// depend on positions alone ([`KnownOrders::by_position`](hardpoint::model::KnownOrders::by_position)).
+    /// Largest errors of the first-order and of the second-order prediction, of the output times that have one; `None`
+    /// if there is none. Outputs that depend on positions alone have the latter
+    /// ([`KnownOrders::by_position`](hardpoint::model::KnownOrders::by_position)).
     pub errors: [Option<f64>; 2],
+    /// Number of output times at which the change is known and a prediction is not, since there are no derivatives.
+    pub unpredicted: usize,
     /// Factor by which the change can be scaled before its second-order part reaches 5 % of its first-order part;
     /// infinite if it is exactly linear, `None` if the first-order part is negligible or the second-order part is
     /// unknown.
@@ -124,16 +127,25 @@ impl WhatIf {
             return None;
         }
         let bends = self.today.measured.outputs[m].known.by_position;
-        let mut errors = [Some(0.0_f64), bends.then_some(0.0)];
+        let orders = if bends { 2 } else { 1 };
+        let (mut errors, mut unpredicted) = ([None::<f64>; 2], 0);
         let (mut change, mut first, mut second) = ((0.0_f64, 0), 0.0_f64, 0.0_f64);
         for k in 0..self.len() {
             let exact = self.exact(k, m);
             let now = exact - self.today.measured.value(k, m)[0];
+            if now.is_nan() {
+                continue;
+            }
             if now.abs() > change.0.abs() {
                 change = (now, k);
             }
-            for (most, predicted) in errors.iter_mut().zip(self.predicted(k, m)) {
-                *most = most.map(|most| most.max((predicted - exact).abs()));
+            let off = self.predicted(k, m).map(|predicted| (predicted - exact).abs());
+            if off[..orders].iter().any(|off| off.is_nan()) {
+                unpredicted += 1;
+                continue;
+            }
+            for (most, off) in errors.iter_mut().zip(&off[..orders]) {
+                *most = Some(most.map_or(*off, |most| most.max(*off)));
             }
             (first, second) = (first.max(self.first(k, m).abs()), second.max(self.second(k, m).abs()));
         }
@@ -142,7 +154,7 @@ impl WhatIf {
             linear_up_to(first / self.part, second / (self.part * self.part)) / self.part
         };
         let linear_up_to = (bends && first > 0.0).then(|| natural(first, second));
-        Some(PredictionQuality { change, errors, linear_up_to })
+        Some(PredictionQuality { change, errors, unpredicted, linear_up_to })
     }
 }
 

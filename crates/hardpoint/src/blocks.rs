@@ -168,10 +168,8 @@ impl Blocks {
     #[inline(always)]
     pub fn set(&mut self, k: usize, first: usize, numbers: impl IntoIterator<Item = f64>) {
         let (lines, lane) = (&mut self.block_mut(k)[first..], k % LANES);
-        let mut n = 0;
-        for x in numbers {
+        for (n, x) in numbers.into_iter().enumerate() {
             lines[n][lane] = x;
-            n += 1;
         }
     }
 

@@ -788,6 +788,7 @@ fn changes_of(facts: &Value, measures: &[String], most: usize) -> Value {
     let mut result = only(facts, &["name", "change", "nearest", "follows", "metrics", "diagnostics"]);
     let list = |key: &str| facts[key].as_array().into_iter().flatten();
     let shown = |row: &&Value| is_shown(row, measures);
+    result.insert("unknown".into(), list("unknown").filter(shown).cloned().collect());
     result.insert("measures".into(), list("measures").filter(shown).cloned().collect());
     let influence: Value = list("influence").filter(shown).cloned().collect();
     result.insert("influence".into(), largest(&influence, "largest", most));

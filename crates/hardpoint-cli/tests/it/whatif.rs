@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::bench::Bench;
 
@@ -236,4 +236,65 @@ fn a_named_design_is_compared_and_taken_by_its_name() {
         let said = String::from_utf8_lossy(&output.stderr);
         assert!(said.contains(why), "{said}");
     }
+}
+
+/// A rod in a box, whose deepest point is between two faces: the depth has a value and no derivative.
+const DEEP: &str = r#"
+name = "deep"
+units = { length = "mm", angle = "deg" }
+hardpoints = { A = [0, 0, 0], B = [100, 0, 0] }
+bodies.arm = {}
+joints.A = { type = "revolute", bodies = ["ground", "arm"], at = "A", axis = "z" }
+drivers.motor = { joint = "A", law = "10*t" }
+shapes.box = { body = "ground", box = [40, 60, 60], frame = { position = [80, 0, 0] }, round = 2 }
+shapes.rod = { body = "arm", capsule = ["A", "B"], radius = 5 }
+clearances.gap = { between = ["rod", "box"] }
+measures.lean = { type = "angle", from = "x", to = [{ body = "arm", at = "A" }, { body = "arm", at = "B" }] }
+metrics.end = { of = "gap", take = "value", at = 1 }
+design.B_x = { move = "B", along = "x", tolerance = 1 }
+design.B_y = { move = "B", along = "y", tolerance = 1 }
+tolerance.limits.end = { min = -30 }
+time = { end = 1.0, steps = 10 }
+"#;
+
+#[test]
+fn a_measure_without_derivatives_has_neither_influences_nor_predictions() {
+    let bench = Bench::with(&[]);
+    bench.put("deep.toml", DEEP);
+    let shown = |arguments: &[&str]| {
+        let text = bench.shown(arguments);
+        assert!(text.contains("exit 0") && !text.to_lowercase().contains("moves it"), "{text}");
+        text
+    };
+    let run = shown(&["run", "deep.toml", "-o", "run"]);
+    assert!(run.contains("gap       no derivative by B_x, B_y"), "{run}");
+    let summary = bench.json("run/summary.json");
+    let mut rankings = summary["sensitivities"].as_array().unwrap().iter();
+    let ranking = rankings.find(|ranking| ranking["measure"] == "gap").unwrap();
+    assert_eq!((&ranking["largest"], &ranking["unknown"]), (&json!([]), &json!(["B_x", "B_y"])));
+
+    let changed = shown(&["whatif", "deep.toml", "--set", "B_y=5", "-o", "out"]);
+    assert!(changed.contains("No derivative by B_x, B_y, A.x, "), "{changed}");
+    assert!(changed.contains("at 11 of 11 times"), "{changed}");
+    let document = bench.json("out/whatif.json");
+    let gap = measure(&document, "gap");
+    assert_eq!((&gap["errors"], &gap["unpredicted"]), (&json!([null, null]), &json!(11)));
+    assert_eq!((&gap["first"], &gap["second"]), (&json!([]), &json!([])));
+    assert!((gap["change"].as_f64().unwrap() - 3.4).abs() < 0.1, "{gap}");
+    assert_eq!(document["unknown"][0]["measure"], "gap");
+    // The angle has a kink where it is 0, at the first output time. At the others the change is atan(d), which is d to
+    // first order, with d = 5/100.
+    let lean = measure(&document, "lean");
+    assert_eq!(lean["unpredicted"], 1);
+    let d: f64 = 0.05;
+    let error = (d - d.atan()).to_degrees();
+    assert!((lean["errors"][0].as_f64().unwrap() - error).abs() < 1e-9 * error.max(1.0), "{lean} {error}");
+
+    let study = shown(&["tolerance", "deep.toml", "--samples", "100", "-o", "study"]);
+    assert!(
+        study.lines().any(|line| line.starts_with("  end") && line.trim_end().ends_with(" -")),
+        "{study}"
+    );
+    let limit = &bench.json("study/summary.json")["limits"][0];
+    assert_eq!((&limit["by_moments"], &limit["sampled"]), (&Value::Null, &json!(1.0)));
 }

@@ -61,4 +61,5 @@ mod tasks;
 mod tolerances;
 mod trade_offs;
 mod tube;
+mod undefined;
 mod wheels;

@@ -528,6 +528,39 @@ fn joints_that_stay_open_visibly_are_warned_of() {
 }
 
 #[test]
+fn mirror_images_of_bars_in_line_are_warned_of() {
+    // Crank, rod and rocker in one line, the rod longer than drawn; the second model lies upside down.
+    let text = |sign: f64, off_line: f64| {
+        format!(
+            r#"
+name = "flat"
+units = {{ length = "mm", angle = "deg" }}
+bodies = {{ crank = {{}}, rocker = {{}} }}
+drivers.motor = {{ joint = "A", law = "10*t" }}
+time = {{ end = 1, steps = 2 }}
+[joints]
+A = {{ type = "revolute", bodies = ["ground", "crank"], at = [0, 0, 0], axis = "z" }}
+D = {{ type = "revolute", bodies = ["ground", "rocker"], at = [{:?}, 0, 0], axis = "z" }}
+rod = {{ type = "rod", bodies = ["crank", "rocker"], at = [[{:?}, 0, 0], [{:?}, {off_line:?}, 0]], length = 170 }}
+"#,
+            300.0 * sign,
+            100.0 * sign,
+            250.0 * sign
+        )
+    };
+    for sign in [1.0, -1.0] {
+        for (off_line, warns) in [(0.0, true), (1.0, false)] {
+            let file = hardpoint_file::parse(&text(sign, off_line), "flat.toml").unwrap();
+            let (solution, summary) = solved(&file);
+            assert!(solution.stop.is_none(), "{:?}", solution.stop);
+            let shown = listing(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None));
+            assert_eq!(shown.contains("HP0413"), warns, "{sign} {off_line}: {shown}");
+            assert_eq!(shown.contains("`rocker` may move to either side"), warns, "{shown}");
+        }
+    }
+}
+
+#[test]
 fn bodies_that_cannot_move_are_warnings_with_a_fix() {
     let frame = |joints: &str| {
         format!(

@@ -118,10 +118,11 @@ impl UnreachedPosture {
 /// Description of the end of a path to a posture. Its times are not those of a motion.
 pub(super) fn path_end(stop: &Stop, model: &Model) -> String {
     match stop.kind {
-        StopKind::Limit | StopKind::BranchChange if stop.last_time.is_none() => {
+        StopKind::Limit | StopKind::CurveEnd { .. } | StopKind::BranchChange if stop.last_time.is_none() => {
             "the mechanism does not reach the design configuration of its drivers".into()
         }
         StopKind::Limit
+        | StopKind::CurveEnd { .. }
         | StopKind::BranchChange
         | StopKind::DoesNotAssemble
         | StopKind::Locked { .. }

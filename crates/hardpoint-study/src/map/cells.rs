@@ -480,7 +480,7 @@ fn join(most: &mut [Vec<f64>], others: &[Vec<f64>]) {
     for (most, others) in most.iter_mut().zip(others) {
         most.iter_mut().zip(others).for_each(|(most, other)| {
             // NaN and infinity remain.
-            if !(*other <= *most) {
+            if !(*other <= *most || most.is_nan()) {
                 *most = *other;
             }
         });

@@ -1,6 +1,6 @@
 //! Request for a table.
 
-use hardpoint::measure::outputs;
+use hardpoint::measure::{clearances_of, outputs};
 use hardpoint::model::{Dimension, DriverId, Model, OutputSource};
 
 use super::Interpolation;
@@ -83,6 +83,7 @@ impl Request {
                 Some("is a derivative by a driver; the table of the value has its derivatives")
             }
             OutputSource::Measure(m) if model.depends_on_step(m) => Some("is a load"),
+            _ if !clearances_of(model, source).is_empty() => Some("is a clearance, or computed from one"),
             _ if !model.known(source).by_position => Some("depends on the motion, not on the position alone"),
             _ => None,
         };

@@ -4,10 +4,11 @@ use std::ops::Range;
 
 use crate::evaluation::{DesignEvaluation, Motions, StudyCost};
 use crate::magnitude::Magnitude;
-use hardpoint::model::{Limit, LimitTarget, Model, OptimizationSettings, Reduction, VariableId};
+use hardpoint::model::{Limit, LimitTarget, Metric, Model, OptimizationSettings, Reduction, VariableId};
 use hardpoint::motion::StopKind;
 use hardpoint::number::Dual;
 use hardpoint::run::{MarginDerivatives, MetricParts, MetricUse, Solution, misfits, peaks};
+use hardpoint::sensitivity::Admissibility;
 
 /// Goals and limits of an optimisation, and the motions that they are evaluated in.
 #[derive(Clone, Debug)]
@@ -533,7 +534,8 @@ impl<'m> Problem<'m> {
     /// A metric with its derivatives by the searched variables.
     fn metric(&self, entry: MotionMetric, found: &DesignEvaluation) -> Result<(f64, Vec<f64>), Refusal> {
         let value = &found.metrics[entry.motion][entry.metric];
-        let name = &self.motions.model(entry.motion).metrics[entry.metric].name;
+        let (model, solution) = (self.motions.model(entry.motion), &found.solutions[entry.motion]);
+        let Metric { name, of, over, .. } = &model.metrics[entry.metric];
         let refusal = |why: String| Refusal { motion: Some(entry.motion), why, interrupted: false };
         let Some(x) = value.value else {
             return Err(refusal(format!(
@@ -542,10 +544,16 @@ impl<'m> Problem<'m> {
         };
         let d = self.searched(&value.d);
         if let Some(v) = d.iter().position(|d| !d.is_finite()) {
-            let variable = &self.model.variables[self.settings.variables[v].0].name;
-            return Err(refusal(format!(
-                "metric `{name}` has no derivative by `{variable}`, which the mechanism cannot follow"
-            )));
+            let searched = self.settings.variables[v];
+            let variable = &self.model.variables[searched.0].name;
+            let known = solution.sensitivities.admissibility.get(searched.0);
+            let why = if matches!(known, Some(Admissibility::CannotFollow { .. })) {
+                "which the mechanism cannot follow".to_owned()
+            } else {
+                let over = over.map_or(String::new(), |over| format!(" or `{}`", model.output_name(over)));
+                format!("since `{}`{over} has none there", model.output_name(*of))
+            };
+            return Err(refusal(format!("metric `{name}` has no derivative by `{variable}`, {why}")));
         }
         Ok((x, d))
     }

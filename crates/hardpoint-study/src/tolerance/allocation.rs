@@ -72,6 +72,8 @@ pub enum AllocationError {
     NoLimits,
     /// The nominal design violates this limit (index in [`ToleranceResult::limits`]).
     NominalExceeds(usize),
+    /// The metric of this limit (index in [`ToleranceResult::limits`]) has no derivatives.
+    NoDerivatives(usize),
     /// Tolerances without a cost exhaust the room of this limit (index in [`ToleranceResult::limits`]).
     Fixed(usize),
 }
@@ -124,7 +126,10 @@ pub(super) fn allocate(
                 rooms.iter().find(|r| !(r.room > 0.0)).map(|r| AllocationError::NominalExceeds(r.limit));
             let nothing = problem.whole(&vec![0.0; free.len()]);
             let used = |r: &&Room| !(problem.slack(r, &nothing) > 0.0);
-            missed.or_else(|| rooms.iter().find(used).map(|r| AllocationError::Fixed(r.limit)))
+            let is_unknown = |r: &&Room| problem.slack(r, &nothing).is_nan();
+            let unknown = || rooms.iter().find(is_unknown).map(|r| AllocationError::NoDerivatives(r.limit));
+            let fixed = || rooms.iter().find(used).map(|r| AllocationError::Fixed(r.limit));
+            missed.or_else(unknown).or_else(fixed)
         }
     };
     if allocation.error.is_some() {

@@ -136,8 +136,8 @@ pub struct LimitYield {
     pub limit: usize,
     /// Index of its metric and motion in [`ToleranceResult::metrics`].
     pub spread: usize,
-    /// Yield of a normal distribution with the moments from derivatives, 0 to 1.
-    pub by_moments: f64,
+    /// Yield of a normal distribution with the moments from derivatives, 0 to 1; `None` if there are no derivatives.
+    pub by_moments: Option<f64>,
     /// Yield of the sampled designs; designs that do not reach the end violate the limit.
     pub sampled: Option<Yield>,
 }
@@ -446,6 +446,10 @@ impl Study<'_> {
         round_off: f64,
         cost: &mut StudyCost,
     ) -> Extreme {
+        // Without derivatives, as at a kink, the worst case is not known.
+        if !extreme.first.is_finite() {
+            return extreme;
+        }
         let nominal = self.nominal.metrics[one.motion][one.place].value.unwrap_or_default();
         let mut solve = |deviations: &[f64]| {
             let design = self.deviations.design(self.model.variables.len(), deviations);
@@ -487,8 +491,9 @@ impl Study<'_> {
                 metrics.iter().enumerate().filter(|(_, m)| limit.of == LimitTarget::Metric(m.metric))
             {
                 let below = |x: f64| normal_below(x, of.mean(), of.best_sigma());
-                let by_moments = limit.most.map_or(1.0, below) - limit.least.map_or(0.0, below);
-                found.push(LimitYield { limit: k, spread, by_moments: by_moments.max(0.0), sampled: None });
+                let between = limit.most.map_or(1.0, below) - limit.least.map_or(0.0, below);
+                let by_moments = (!between.is_nan()).then(|| between.max(0.0));
+                found.push(LimitYield { limit: k, spread, by_moments, sampled: None });
             }
         }
         found

@@ -41,6 +41,9 @@ use crate::space::{Mat3, Pose, Vec3};
 const PERPENDICULAR_TOLERANCE: f64 = 1e-6;
 /// Distance, relative to the size of the mechanism, below which two points coincide.
 const SAME_POINT: f64 = 1e-9;
+/// Distance from a curve, relative to the size of the mechanism, below which a point is drawn on it: coordinates typed
+/// into a file have about six digits.
+const ON_CURVE: f64 = 1e-6;
 /// Largest coordinate and length, m: beyond the size of the universe, and so small that products of ten of them do not
 /// overflow.
 const LARGEST_LENGTH: f64 = 1e30;

@@ -36,8 +36,10 @@ const LONGEST: f64 = 0.5;
 /// Shortest part of the way from one output time, or turn of a law, to the next: if it is rejected, there is no
 /// equilibrium near by.
 const SHORTEST: f64 = 1e-9;
-/// The same while it is not known whether other openings describe the way better.
+/// The same before it is known whether other openings describe the way better.
 const SHORTEST_AT_FIRST: f64 = 0.01;
+/// Ratio of the shortest parts before and after these openings turn out to be the better ones.
+const FEWER: f64 = 0.1;
 /// Maximum number of equilibria that a prediction uses.
 const PREDICTED_FROM: usize = 3;
 /// Maximum sum of the sizes of the weights of a prediction: 7 for uniform output times. A larger sum amplifies what
@@ -156,8 +158,8 @@ pub(crate) struct EquilibriumSolver<'a> {
     is_regular: bool,
     /// True if the derivatives are those at the equilibrium that was found last.
     is_prepared: bool,
-    /// True if no other openings describe the way to the next output time better.
-    pub is_patient: bool,
+    /// Shortest part of the way to the next output time or turn of a law.
+    shortest: f64,
     /// Iterations so far.
     pub iterations: usize,
 }
@@ -204,7 +206,7 @@ impl<'a> EquilibriumSolver<'a> {
             terms: vec![0.0; n],
             is_regular: false,
             is_prepared: false,
-            is_patient: false,
+            shortest: SHORTEST_AT_FIRST,
             iterations: 0,
         }
     }
@@ -234,7 +236,7 @@ impl<'a> EquilibriumSolver<'a> {
         let (drivers, stiffness) = (self.last.drivers.clone(), self.stiffness.clone());
         self.path.push(Passed { time: t, drivers, stiffness });
         self.reported = Some((t, self.user_drivers(one)));
-        self.is_patient = false;
+        self.shortest = SHORTEST_AT_FIRST;
         Ok(())
     }
 
@@ -249,11 +251,22 @@ impl<'a> EquilibriumSolver<'a> {
             stiffness: None,
         };
         self.reported.clone_from(&before.reported);
+        self.shortest = before.shortest;
         self.iterations = before.iterations;
         let given = self.last.loads.clone();
         let is_stable = self.examine(one, &given).is_ok();
         self.last.stiffness = Some(self.stiffness.clone());
         is_stable
+    }
+
+    /// True if a step that fails ends the motion with these openings.
+    pub fn takes_shortest_steps(&self) -> bool {
+        self.shortest <= SHORTEST
+    }
+
+    /// Permits shorter steps, since no other openings describe the way better so far.
+    pub fn permit_shorter_steps(&mut self) {
+        self.shortest = f64::max(SHORTEST, FEWER * self.shortest);
     }
 
     /// Part of the way to the first output time, and the time, of the equilibrium that was accepted last.
@@ -306,7 +319,7 @@ impl<'a> EquilibriumSolver<'a> {
                 Err(_) if is_predicted => {}
                 Err(rejection) => {
                     part *= 0.5;
-                    if part < if self.is_patient { SHORTEST } else { SHORTEST_AT_FIRST } {
+                    if part < self.shortest {
                         return Err(self.stop(one, (from, t), done, rejection));
                     }
                 }

@@ -417,6 +417,14 @@ pub(crate) fn clearance_of(model: &Model, output: OutputSource) -> Option<Cleara
     if let MeasureKind::Clearance { of } = model.measures[k].kind { Some(of) } else { None }
 }
 
+/// The clearances that an output is computed from.
+pub fn clearances_of(model: &Model, output: OutputSource) -> Vec<ClearanceId> {
+    let OutputSource::Measure(k) = output else { return Vec::new() };
+    let sources = model.measures[k].kind.sources().into_iter();
+    let of_sources = sources.flat_map(|source| clearances_of(model, source));
+    clearance_of(model, output).into_iter().chain(of_sources).collect()
+}
+
 /// The bodies that measures and named points are fixed in.
 pub(crate) fn bodies_asked_for(model: &Model) -> Vec<usize> {
     let mut bodies: Vec<usize> = model.points.iter().map(|p| p.body.0).collect();

@@ -19,6 +19,7 @@ mod wheel;
 
 pub(crate) use bodies::with_rates;
 pub(crate) use evaluate::{Context, MeasuredDesign, derivatives, evaluate};
+pub use formulas::clearances_of;
 pub(crate) use formulas::{Instant, bodies_asked_for, clearance_of, is_formula};
 pub use program::MeasureFormulas;
 pub(crate) use program::{MeasureProgram, ProgramKey, dependences};

@@ -182,6 +182,13 @@ impl Curve {
         self.start
     }
 
+    /// The curve for a follower in another design configuration, unless that is beyond its ends.
+    pub(crate) fn followed_at(&self, follower: [f64; 2]) -> Self {
+        let start = self.search(follower);
+        let has_contact = self.at(start)[0][0].is_finite();
+        Self { start: if has_contact { start } else { self.start }, ..self.clone() }
+    }
+
     /// The parameter of the point of the curve that is next to p, from a near one.
     ///
     /// The foot of the perpendicular, `(p - C) . C' = 0`; NaN where an open curve has none, and where none is found
@@ -216,6 +223,27 @@ impl Curve {
         let u = self.nearest(p, near);
         // A closed curve has a nearest point to every point; the first steps find it better from there.
         if u.is_nan() && self.closed { near } else { u }
+    }
+
+    /// The parameter at which p has this distance from the curve, positive on its left, within `near`; the parameter
+    /// next to p if there is none. Both from anywhere: the nearest point need not be the contact, as where a roller
+    /// passes between two flanks.
+    pub(crate) fn contact(&self, p: [f64; 2], distance: f64, near: f64) -> f64 {
+        let n = TRIED * self.points;
+        let sample = |k: usize| self.length * k as f64 / n as f64;
+        // g(u) = (p - C) . C', which changes its sign at each foot of a perpendicular
+        let g = |u: f64| {
+            let [c, d, ..] = self.at(u);
+            dot([p[0] - c[0], p[1] - c[1]], d)
+        };
+        let off = |u: f64| {
+            let [c, d, ..] = self.at(u);
+            let left = [-d[1], d[0]];
+            (dot(left, [p[0] - c[0], p[1] - c[1]]) / dot(d, d).sqrt() - distance).abs()
+        };
+        let feet = (0..n).map(|k| [sample(k), sample(k + 1)]).filter(|[a, b]| g(*a) * g(*b) <= 0.0);
+        let feet = feet.map(|[a, b]| self.nearest(p, 0.5 * (a + b))).filter(|u| off(*u) <= near);
+        feet.min_by(|a, b| off(*a).total_cmp(&off(*b))).unwrap_or_else(|| self.search(p))
     }
 
     /// Distance of p from the curve, positive on its left.

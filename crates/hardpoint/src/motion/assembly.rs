@@ -14,7 +14,7 @@ use crate::space::{Quat, Vec3};
 use crate::topology::{BlockId, CoordinateId, LoopLink, RowId, RowTerm, Topology};
 
 use super::gap::{Assembly, AssemblyShift, Closing, Gap, SINGULAR_DRAWING};
-use super::mechanism::{AcceptedPosition, Mechanism, StepRejection};
+use super::mechanism::{AcceptedPosition, LOCKED, Mechanism, StepRejection};
 use super::parts::PlanGeometry;
 use super::path::Path;
 use super::stepper::Stepper;
@@ -83,11 +83,11 @@ pub(super) fn assemble(one: &mut Stepper<'_>) -> Result<(), Box<Stop>> {
     // Gaps of the design configuration; those of a changed design at the start of another assembly are none of these.
     let reported = if m.topology.start.is_some() { f64::INFINITY } else { REPORTED_GAP };
     let gaps = gaps(m, |r| m.state.gap[r.0], reported);
-    let mut found_nearby = 0;
+    let [mut found_nearby, mut equally_near] = [0; 2];
     if let Err(stop) = assemble_along_path(one) {
-        found_nearby = match is_searched(&one.mechanism, &stop) {
+        [found_nearby, equally_near] = match is_searched(&one.mechanism, &stop) {
             true => assemble_nearby(&mut one.mechanism, &drawn),
-            false => 0,
+            false => [0; 2],
         };
         if found_nearby == 0 {
             return Err(stop);
@@ -95,7 +95,7 @@ pub(super) fn assemble(one: &mut Stepper<'_>) -> Result<(), Box<Stop>> {
     }
     let m = &mut one.mechanism;
     if !gaps.is_empty() {
-        one.assembly = Some(Assembly { gaps, moved: moved(m, REPORTED_GAP), found_nearby });
+        one.assembly = Some(Assembly { gaps, moved: moved(m, REPORTED_GAP), found_nearby, equally_near });
     }
     m.state.gap.fill(0.0);
     m.state.gap_left = [0.0; 2];
@@ -161,11 +161,11 @@ fn is_searched(m: &Mechanism<'_>, stop: &Stop) -> bool {
 }
 
 /// Assembles the mechanism from positions around the design configuration, and moves to the nearest assembly.
-/// Returns the number of assemblies found, or 0.
-fn assemble_nearby(m: &mut Mechanism<'_>, drawn: &(AcceptedPosition, Topology)) -> usize {
+/// Returns the number of assemblies found, or 0, and the number of those that are as near as that one.
+fn assemble_nearby(m: &mut Mechanism<'_>, drawn: &(AcceptedPosition, Topology)) -> [usize; 2] {
     let unknowns: Vec<CoordinateId> = m.topology.unknown_coordinates().collect();
     if unknowns.len() > LARGEST_SEARCH {
-        return 0;
+        return [0; 2];
     }
     let blocks = m.topology.block_ids();
     let rows: Vec<RowId> = blocks.flat_map(|b| m.topology.rows_of_block(b)).collect();
@@ -182,15 +182,15 @@ fn assemble_nearby(m: &mut Mechanism<'_>, drawn: &(AcceptedPosition, Topology)) 
     }
     // The nearest assembly; on equal distance that on the positive side.
     let nearest = found.iter().map(|a| a.distance).fold(f64::INFINITY, f64::min) + ONE_ASSEMBLY;
-    let near = found.iter().filter(|a| a.distance <= nearest);
-    let Some(taken) = near.max_by(|a, b| a.side.total_cmp(&b.side)) else {
+    let near = || found.iter().filter(|a| a.distance <= nearest);
+    let Some(taken) = near().max_by(|a, b| a.side.total_cmp(&b.side)) else {
         set_drawn(m, drawn);
-        return 0;
+        return [0; 2];
     };
     m.state.q.copy_from_slice(&taken.q);
     m.state.balls.copy_from_slice(&taken.balls);
     m.state.contacts.copy_from_slice(&taken.contacts);
-    if stand_assembled(m) { found.len() } else { 0 }
+    if stand_assembled(m) { [found.len(), near().count()] } else { [0; 2] }
 }
 
 /// Other assemblies of the mechanism at the position of the state, with all drivers at zero, the nearest first.
@@ -250,6 +250,7 @@ fn scatter(
         m.state.q[c.0] += range * part;
     }
     m.state.turn_balls(&m.topology, m.topology.link_ids());
+    m.state.find_contacts(&m.topology, &m.parts, LOCKED);
 }
 
 /// Number between 0 and 1 for every index, without pattern (the mixing function of SplitMix64).

@@ -17,6 +17,9 @@ pub struct Assembly {
     /// Number of assemblies found around the design configuration if the path from it leads to none; the nearest was
     /// chosen. 0 if the path closed the mechanism.
     pub found_nearby: usize,
+    /// Number of those that are as near as the chosen one, itself included, such as the two mirror images of bars drawn
+    /// in line: the design configuration does not decide between them.
+    pub equally_near: usize,
 }
 
 /// Gap of an open constraint.

@@ -112,6 +112,23 @@ pub(crate) enum PositionFailure {
     NoConvergence { block: BlockId },
 }
 
+impl State<f64> {
+    /// Places the bodies, and every contact where it is at these coordinates, anywhere on its curve; `closed` is the
+    /// largest residual, in sizes, of a contact that is closed.
+    pub fn find_contacts(&mut self, topology: &Topology, parts: &PlanGeometry<f64>, closed: f64) {
+        self.place(topology, parts, topology.link_ids());
+        let contact = |(c, k): (ClosureId, usize)| {
+            let [i, j] = topology[c].bodies;
+            let carrier = self.frame[i.0].compose(parts.ends[0][c.0]);
+            let p = carrier.inverse().point(self.frame[j.0].point(parts.ends[1][c.0].r));
+            // The one row of such a joint keeps the distance from the curve.
+            let (curve, r) = (&parts.curves[k], topology[c].first_row);
+            Contact::at(curve, curve.contact([p.x, p.y], parts.kept[r.0], closed * topology[r].unit))
+        };
+        self.contacts = topology.contacts().map(contact).collect();
+    }
+}
+
 impl<T: Real> State<T> {
     /// State in the design configuration.
     pub fn new(model: &Model, topology: &Topology) -> Self {

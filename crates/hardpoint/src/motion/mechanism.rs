@@ -110,7 +110,12 @@ impl<'m> Mechanism<'m> {
             state.q.copy_from_slice(&start.q);
             state.balls.copy_from_slice(&start.balls);
         }
-        state.contacts = parts.curves.iter().map(|c| Contact::at(c, c.start())).collect();
+        state.contacts = match &topology.start {
+            Some(start) => {
+                parts.curves.iter().zip(&start.contacts).map(|(c, u)| Contact::at(c, *u)).collect()
+            }
+            None => parts.curves.iter().map(|c| Contact::at(c, c.start())).collect(),
+        };
         let saved = AcceptedPosition {
             time: 0.0,
             q: state.q.clone(),

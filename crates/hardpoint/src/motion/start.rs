@@ -16,6 +16,7 @@ use crate::topology::{CoordinateId, LinkId, SetBy, StartCoordinates, Topology};
 
 use super::assembly::{self, assemble, placements};
 use super::kinematics::State;
+use super::mechanism::LOCKED;
 use super::parts::PlanGeometry;
 use super::path::Path;
 use super::stepper::Stepper;
@@ -46,8 +47,11 @@ pub(crate) fn start_coordinates(model: &Model, topology: &Topology) -> Option<Ar
         let target = model.start_pose(topology[k].child).compose(parts.child_from_marker[k.0].inverse());
         reach(&mut state, topology, &parts, k, (target, model.size()));
     }
+    // A curve is touched there at another place than in the design configuration.
+    state.find_contacts(topology, &parts, LOCKED);
+    let contacts = state.contacts.iter().map(|contact| contact.u).collect();
     let mut topology = topology.clone();
-    let mut start = StartCoordinates { q: state.q, balls: state.balls, signs: Vec::new() };
+    let mut start = StartCoordinates { q: state.q, balls: state.balls, contacts, signs: Vec::new() };
     topology.start = Some(Arc::new(start.clone()));
     let mut one = Stepper::new(model, &topology, parts).mechanism;
     one.measure_gaps();

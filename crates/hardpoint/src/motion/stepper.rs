@@ -1,7 +1,7 @@
 //! Solver of one design on its path: the mechanism, and what decides and records its steps.
 
 use crate::model::{DriverId, JointId, Model};
-use crate::topology::{ClosureId, Topology};
+use crate::topology::{BlockId, ClosureId, Topology};
 
 use super::crossing::Crossing;
 use super::gap::Assembly;
@@ -20,6 +20,9 @@ use super::{SingularPosition, SolverStatistics, Stop, StopKind};
 const LIMIT: f64 = 0.75;
 /// Maximum deviation of the power from 1/2 or 1 for which the kind of a singular position ahead is clear.
 const CLEAR_POWER: f64 = 0.1;
+/// Distance from the end of a curve, relative to its length, below which a path ends there: steps beyond it are
+/// rejected, and shortened until they are shorter than this.
+const CURVE_END: f64 = 1e-6;
 /// Relative difference below which two times are equal; a law that changes between them jumps.
 pub(super) const ONE_TIME: f64 = 1e-14;
 
@@ -193,6 +196,10 @@ impl<'m> Stepper<'m> {
             StepRejection::Law { driver } => (StopKind::LawNotFinite { driver: DriverId(driver) }, None),
             StepRejection::TooFar { driver } => (StopKind::TooFar { driver: DriverId(driver) }, None),
         };
+        let kind = match (kind, self.curve_that_ends(block)) {
+            (StopKind::Limit | StopKind::BranchChange, Some(joint)) => StopKind::CurveEnd { joint },
+            (kind, _) => kind,
+        };
         let (last_time, failed_time) = match path {
             Path::Assembly => (None, 0.0),
             Path::Line { at } => (None, at),
@@ -210,6 +217,17 @@ impl<'m> Stepper<'m> {
             remains: Vec::new(),
             closed: (path == Path::Assembly).then_some(now),
         })
+    }
+
+    /// Joint of a block whose point is at an end of an open curve at the accepted position. There is no contact beyond.
+    fn curve_that_ends(&self, block: Option<BlockId>) -> Option<JointId> {
+        let Mechanism { topology, parts, saved, .. } = &self.mechanism;
+        let is_at_end = |(c, k): &(ClosureId, usize)| {
+            let (curve, u) = (&parts.curves[*k], saved.contacts[*k].u);
+            let left = u.min(curve.length() - u);
+            topology[*c].block == block && !curve.is_closed() && left <= CURVE_END * curve.length()
+        };
+        topology.contacts().find(is_at_end).map(|(c, _)| topology[c].joint)
     }
 
     /// Takes over the accepted position at rest of another stepper, whose mechanism is the same but for its unknown

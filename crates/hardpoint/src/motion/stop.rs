@@ -35,6 +35,11 @@ pub struct Stop {
 pub enum StopKind {
     /// The drivers prescribe a position that the mechanism cannot reach (HP0401).
     Limit,
+    /// The point of a joint reaches the end of the curve that it follows (HP0401).
+    CurveEnd {
+        /// The joint.
+        joint: JointId,
+    },
     /// A dead point or change point: beyond it the mechanism may take another branch (HP0402).
     BranchChange,
     /// The mechanism is open in the design configuration and cannot be closed (HP0406).
@@ -189,7 +194,7 @@ impl Stop {
     /// Stable code.
     pub fn code(&self) -> &'static str {
         match self.kind {
-            StopKind::Limit => "HP0401",
+            StopKind::Limit | StopKind::CurveEnd { .. } => "HP0401",
             StopKind::BranchChange => "HP0402",
             StopKind::Locked { .. } => "HP0403",
             StopKind::LawNotFinite { .. } | StopKind::LoadNotFinite { .. } => "HP0404",
@@ -215,6 +220,7 @@ impl Stop {
         }
         match self.kind {
             StopKind::Limit => format!("the mechanism cannot move beyond t = {t:.6} s"),
+            StopKind::CurveEnd { .. } => format!("{} at t = {t:.6} s", self.happened(model)),
             StopKind::BranchChange => format!("the mechanism passes a dead point at t = {t:.6} s"),
             StopKind::DoesNotAssemble => match self.remains.first() {
                 Some(gap) => format!("the mechanism does not assemble: {} stays open", gap.of.name(model)),
@@ -282,6 +288,9 @@ impl Stop {
     pub fn happened(&self, model: &Model) -> String {
         match self.kind {
             StopKind::Limit => "the mechanism reaches a limit position".into(),
+            StopKind::CurveEnd { joint } => {
+                format!("the point of `{}` reaches the end of its curve", model.joints[joint.0].name)
+            }
             StopKind::BranchChange => "the mechanism passes a dead point".into(),
             StopKind::Locked { joint, .. } if self.closed.is_none() => {
                 format!("the mechanism locks: joint `{}` cannot stay closed", model.joints[joint.0].name)
@@ -330,6 +339,9 @@ impl Stop {
             StopKind::Limit => {
                 "a limit position: shorten the sweep of the drivers, or move the hardpoints of these joints so that \
                  the loop reaches further"
+            }
+            StopKind::CurveEnd { .. } => {
+                "extend the curve as far as the point moves, or shorten the sweep of the drivers"
             }
             StopKind::BranchChange => {
                 "at a dead point the loop may continue on either of two branches and its velocities are not defined; \

@@ -4,7 +4,7 @@
 //! change its features there, where its acceleration jumps.
 
 use crate::clearance::{ChangingBodies, MovingBodies, PlacedShapes};
-use crate::design::{BodyFixed, ShapeGeometry};
+use crate::design::{BodyFixed, DesignMap, ShapeGeometry};
 use crate::measure::clearance_of;
 use crate::model::{
     BodyId, Clearance, ClearanceId, Model, OutputSource, PointId, Reduction, Shape, ShapeId, ShapeKind,
@@ -466,6 +466,19 @@ impl Analysis<'_> {
             })
             .collect()
     }
+}
+
+/// Per output time and clearance of a motion of the nominal design, time by time: true where other features of the
+/// nearest shapes are as deep in each other. The distance has no derivatives there, unless the shapes do not move
+/// relative to each other.
+pub fn tied_clearances(model: &Model, motion: &Motion) -> Vec<bool> {
+    let fixed = DesignMap::of(model).fixed(&model.whole(&[])).map(Jet::constant);
+    let mut tied = Vec::new();
+    PosedMotion { model, motion, fixed }.each(0..motion.len(), |_, placed| {
+        let is_tied = |c: usize| placed.nearest_pair(ClearanceId(c)).is_some_and(|(_, near)| near.is_tied);
+        tied.extend((0..model.clearances.len()).map(is_tied));
+    });
+    tied
 }
 
 /// Shapes of a design over its motion.

@@ -329,8 +329,9 @@ impl<'a> Walk<'a> {
     /// the constraints leave at the position accepted last. Returns the stop if it ends there with these as well.
     fn go_on(&mut self, t: f64, mut stop: Box<Stop>) -> Result<(), Box<Stop>> {
         loop {
-            let is_patient = self.equilibrium.as_ref().is_none_or(|equilibrium| equilibrium.is_patient);
-            if is_patient && !may_end_with_openings(&stop.kind) {
+            let takes_shortest_steps =
+                self.equilibrium.as_ref().is_none_or(EquilibriumSolver::takes_shortest_steps);
+            if takes_shortest_steps && !may_end_with_openings(&stop.kind) {
                 return Err(stop);
             }
             let rows = self.one.mechanism.accepted_rows();
@@ -339,11 +340,10 @@ impl<'a> Walk<'a> {
             };
             let other = analysis.and_then(|analysis| self.in_openings_of(analysis));
             let worth = |other: &Walk<'_>| {
-                is_patient || self.one.least_pivot_ratio() < BETTER * other.one.least_pivot_ratio()
+                takes_shortest_steps || self.one.least_pivot_ratio() < BETTER * other.one.least_pivot_ratio()
             };
             let taken = other.filter(worth).and_then(|mut other| {
                 let equilibrium = other.equilibrium.as_mut()?;
-                equilibrium.is_patient = is_patient;
                 let from = equilibrium.reached();
                 let step = equilibrium.step(&mut other.one, t);
                 let goes_on = match (from, equilibrium.reached()) {
@@ -358,8 +358,8 @@ impl<'a> Walk<'a> {
                     self.follow_plan(other);
                     step
                 }
-                (None, Some(equilibrium)) if !is_patient => {
-                    equilibrium.is_patient = true;
+                (None, Some(equilibrium)) if !takes_shortest_steps => {
+                    equilibrium.permit_shorter_steps();
                     equilibrium.step(&mut self.one, t)
                 }
                 (None, _) => {
@@ -501,6 +501,7 @@ fn may_end_with_openings(kind: &StopKind) -> bool {
         | StopKind::Unstable { .. }
         | StopKind::TooStiff { .. } => true,
         StopKind::Limit
+        | StopKind::CurveEnd { .. }
         | StopKind::BranchChange
         | StopKind::DoesNotAssemble
         | StopKind::Locked { .. }

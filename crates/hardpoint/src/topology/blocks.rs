@@ -6,7 +6,7 @@ use petgraph::algo::kosaraju_scc;
 use petgraph::graph::{DiGraph, NodeIndex};
 
 use crate::linalg::FullPivot;
-use crate::model::{BodyId, Model};
+use crate::model::{BodyId, JointId, Model};
 
 use super::error::TopologyError;
 use super::matching::match_columns;
@@ -234,6 +234,14 @@ fn shifted(model: &Model) -> Model {
     for hardpoint in &mut shifted.hardpoints {
         let mut next = || SHIFT * size * parts.next().expect("there is always another");
         hardpoint.position += crate::space::Vec3::new(next(), next(), next());
+    }
+    // A point touches its curve elsewhere then, where the tangent has another direction.
+    for j in 0..shifted.joints.len() {
+        let [carrier, follower] = [0, 1].map(|end| shifted.marker(JointId(j), end));
+        if let Some(curve) = &mut shifted.joints[j].curve {
+            let p = carrier.inverse().point(follower.r);
+            *curve = curve.followed_at([p.x, p.y]);
+        }
     }
     shifted
 }

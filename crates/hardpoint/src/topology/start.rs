@@ -9,6 +9,8 @@ pub struct StartCoordinates {
     pub(crate) q: Vec<f64>,
     /// Per coordinate that begins a ball: its rotation.
     pub(crate) balls: Vec<Quat<f64>>,
+    /// Per curve: parameter of the contact, m.
+    pub(crate) contacts: Vec<f64>,
     /// Per block: sign of the determinant there, of the nominal design; a changed design must have the same. Empty if
     /// the position is singular.
     pub(crate) signs: Vec<bool>,

@@ -120,3 +120,46 @@ fn a_rod_that_cannot_reach_is_reported_with_its_gap() {
         assert!(!stop.remains.is_empty());
     }
 }
+
+/// Crank, rod and rocker drawn in one line, turned by an angle about z; the rod is given another length.
+fn flat(angle: f64, off_line: f64) -> Draft {
+    let z = Some([0.0, 0.0, 1.0]);
+    let (sin, cos) = angle.sin_cos();
+    let at = |x: f64, y: f64| [x * cos - y * sin, x * sin + y * cos, 0.0];
+    let ends = [at(0.1, 0.0), at(0.25, off_line)];
+    Draft {
+        name: "flat four-bar".into(),
+        bodies: ["crank", "rocker"].map(body).into(),
+        joints: vec![
+            joint("A", "revolute", ["ground", "crank"], &[[0.0; 3]], z),
+            joint("D", "revolute", ["ground", "rocker"], &[at(0.3, 0.0)], z),
+            joint("rod", "distance", ["crank", "rocker"], &ends, None).length(0.17),
+        ],
+        drivers: vec![driver("motor", "A", "0.2*t")],
+        measures: vec![MeasureDraft::new("rocker", "D")],
+        times: times(1.0, 2),
+        ..Draft::default()
+    }
+}
+
+#[test]
+fn mirror_images_of_a_flat_drawing_are_counted_as_equally_near() {
+    // The triangle of rod (0.17), rocker (0.05) and the line from the crank to D (0.2): the rocker turns by its angle.
+    let angle = f64::acos((0.2_f64.powi(2) + 0.05_f64.powi(2) - 0.17_f64.powi(2)) / (2.0 * 0.2 * 0.05));
+    for turned in [0.0, 1.0, 2.5, 4.0] {
+        let solution = run(&flat(turned, 0.0), Formulation::Relative);
+        let assembly = solution.motion.assembly.as_ref().unwrap();
+        assert_eq!(assembly.equally_near, 2, "{turned}: {assembly:?}");
+        let rocker = solution.measured.value(0, solution.measured.index("rocker").unwrap())[0];
+        assert!((rocker.abs() - angle).abs() < 1e-9, "{turned}: {rocker}");
+        // Drawn a little off the line, it is closed on that side.
+        for off_line in [1e-3, -1e-3] {
+            let solution = run(&flat(turned, off_line), Formulation::Relative);
+            let assembly = solution.motion.assembly.as_ref().unwrap();
+            assert!(assembly.equally_near < 2, "{turned}: {assembly:?}");
+            let rocker = solution.measured.value(0, solution.measured.index("rocker").unwrap())[0];
+            // The rocker points to -x, so that it turns the other way.
+            assert!(rocker * off_line < 0.0, "{turned}, {off_line}: {rocker}");
+        }
+    }
+}

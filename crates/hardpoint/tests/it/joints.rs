@@ -3,7 +3,8 @@
 use std::ops::ControlFlow;
 
 use hardpoint::joint::ALL;
-use hardpoint::topology::{Formulation, JointRole};
+use hardpoint::motion::StopKind;
+use hardpoint::topology::{Formulation, JointRole, TopologyError};
 use hardpoint::{Analysis, Solution};
 use hardpoint::{draft::*, model::*};
 use hardpoint_study::verify::{self, verify};
@@ -235,7 +236,171 @@ fn a_pin_that_reaches_the_end_of_its_slot_stops_there_and_keeps_its_results() {
     let solution = Analysis::new(&model).unwrap().run();
     let stop = solution.stop.unwrap();
     assert!(solution.motion.len() > 10 && solution.motion.len() < 25, "{}", solution.motion.len());
-    assert_eq!(stop.kind, hardpoint::motion::StopKind::Limit);
+    assert_eq!(stop.kind, StopKind::CurveEnd { joint: joint_named(&model, "pin") });
+}
+
+fn joint_named(model: &Model, name: &str) -> JointId {
+    JointId(model.joints.iter().position(|j| j.name == name).unwrap())
+}
+
+/// A point on a curve of ground, moved along x by a driver and free along y: `from` is its place.
+fn point_on(curve: Vec<[f64; 3]>, closed: bool, from: [f64; 3], law: &str) -> Draft {
+    let at = [[0.0; 3], from];
+    let con =
+        joint("con", "point_on_curve", ["ground", "lift"], &at, Some([0.0, 0.0, 1.0])).curve(curve, closed);
+    Draft {
+        name: "point on a curve".into(),
+        bodies: ["cart", "lift"].map(body).into(),
+        joints: vec![
+            joint("x", "translational", ["ground", "cart"], &[[0.0; 3]], Some([1.0, 0.0, 0.0])),
+            joint("y", "translational", ["cart", "lift"], &[[0.0; 3]], Some([0.0, 1.0, 0.0])),
+            con,
+        ],
+        drivers: vec![driver("m", "x", law)],
+        measures: vec![MeasureDraft::new("y", "y")],
+        times: times(1.0, 5),
+        ..Draft::default()
+    }
+}
+
+fn circle(centre: f64, radius: f64) -> Vec<[f64; 3]> {
+    let angle = |k: i32| 2.0 * std::f64::consts::PI * f64::from(k) / 48.0;
+    (0..48).map(|k| [centre + radius * angle(k).cos(), radius * angle(k).sin(), 0.0]).collect()
+}
+
+#[test]
+fn a_point_that_runs_off_an_open_curve_stops_at_its_end() {
+    // y = 10 x^2 up to x = 0.05, from the vertex and from the very end.
+    let parabola =
+        || (-5..=5).map(|k| f64::from(k) * 0.01).map(|x| [x, 10.0 * x * x, 0.0]).collect::<Vec<_>>();
+    for (from, law, end) in [
+        ([0.0; 3], "0.052*t", 0.05 / 0.052),
+        ([0.05, 0.025, 0.0], "1e-5*t", 0.0),
+        ([0.0; 3], "-0.06*t", 5.0 / 6.0),
+    ] {
+        let model = Model::from_draft(&point_on(parabola(), false, from, law)).unwrap();
+        for formulation in [Formulation::Relative, Formulation::Absolute] {
+            let stop = Analysis::with(&model, formulation).unwrap().run().stop.unwrap();
+            assert_eq!(stop.kind, StopKind::CurveEnd { joint: joint_named(&model, "con") }, "{law}");
+            assert!((stop.failed_time - end).abs() < 1e-5, "{law}: {}", stop.failed_time);
+            assert_eq!(stop.code(), "HP0401");
+        }
+        let stop = Analysis::new(&model).unwrap().run().stop.unwrap();
+        let text = stop.headline(&model);
+        assert!(text.starts_with("the point of `con` reaches the end of its curve at t = "), "{text}");
+    }
+}
+
+#[test]
+fn a_dead_point_on_a_curve_is_singular_and_not_under_driven() {
+    // At the outermost point of the circle the tangent is along y; a rod of the same radius is singular there, too.
+    let on_curve = point_on(circle(0.0, 0.03), true, [0.03, 0.0, 0.0], "-0.005*t");
+    let mut on_rod = on_curve.clone();
+    on_rod.joints[2] = joint("con", "distance", ["ground", "lift"], &[[0.0; 3], [0.03, 0.0, 0.0]], None);
+    for draft in [on_curve, on_rod] {
+        for formulation in [Formulation::Relative, Formulation::Absolute] {
+            let model = Model::from_draft(&draft).unwrap();
+            let fault = Analysis::with(&model, formulation).unwrap_err();
+            assert!(
+                matches!(fault, TopologyError::Singular { freedom: 1, .. }),
+                "{formulation:?}: {fault:?}"
+            );
+        }
+    }
+    // Without its driver it is free anywhere.
+    let mut free = point_on(circle(0.0, 0.03), true, [0.03 * 0.6, 0.03 * 0.8, 0.0], "t");
+    free.drivers.clear();
+    let fault = Analysis::new(&Model::from_draft(&free).unwrap()).unwrap_err();
+    assert!(matches!(fault, TopologyError::UnderDriven { freedom: 1, .. }), "{fault:?}");
+}
+
+/// An eccentric disc of radius 30 mm under a roller of 10 mm on a swinging arm.
+fn cam_and_arm(roller: [f64; 3]) -> Draft {
+    let z = Some([0.0, 0.0, 1.0]);
+    let cam = joint("cam", "point_on_curve", ["disc", "arm"], &[[0.0; 3], roller], z);
+    Draft {
+        name: "cam and arm".into(),
+        bodies: ["disc", "arm"].map(body).into(),
+        joints: vec![
+            joint("shaft", "revolute", ["ground", "disc"], &[[0.0; 3]], z),
+            joint("pivot", "revolute", ["ground", "arm"], &[ARM_PIVOT], z),
+            cam.curve(circle(ECCENTRICITY, 0.03), true),
+        ],
+        drivers: vec![driver("motor", "shaft", "t")],
+        measures: vec![MeasureDraft::new("pivot", "pivot")],
+        times: times(6.0, 24),
+        ..Draft::default()
+    }
+}
+
+const ARM_PIVOT: [f64; 3] = [0.07, 0.01, 0.0];
+const ECCENTRICITY: f64 = 0.01;
+/// Length of the arm, m, of rollers that touch the disc.
+const ARM: f64 = 0.06;
+
+/// Direction of the arm at an angle of the shaft, rad, where the circles about the disc's centre and about the pivot
+/// intersect, on either side of the line between them.
+fn arm_at(shaft: f64, side: f64) -> f64 {
+    let [x, y] = [ECCENTRICITY * shaft.cos() - ARM_PIVOT[0], ECCENTRICITY * shaft.sin() - ARM_PIVOT[1]];
+    let d = x.hypot(y);
+    // Cosine rule in the triangle of arm, centres and disc with roller (40 mm).
+    y.atan2(x) + side * ((ARM * ARM + d * d - 0.04 * 0.04) / (2.0 * ARM * d)).acos()
+}
+
+#[test]
+fn a_start_on_the_other_contact_of_a_cam_is_followed_there() {
+    for drawn in [-1.0, 1.0] {
+        let angle = arm_at(0.0, drawn);
+        let [x, y, _] = ARM_PIVOT;
+        let draft = cam_and_arm([x + ARM * angle.cos(), y + ARM * angle.sin(), 0.0]);
+        let model = Model::from_draft(&draft).unwrap();
+        let pivot = hardpoint::space::Vec3::from(ARM_PIVOT);
+        // At the other contact, and some degrees beside it.
+        for off in [0.0, 0.05, -0.05] {
+            let turn = arm_at(0.0, -drawn) - angle + off;
+            let turned =
+                StartPlacement::new(BodyId(2), [0.0, 0.0, turn].into(), hardpoint::space::Vec3::ZERO);
+            let shift = pivot - turned.displacement.point(pivot);
+            let start = StartPlacement::new(BodyId(2), [0.0, 0.0, turn].into(), shift);
+            for (model, side) in [(&model, drawn), (&model.starting_at(&[start]), -drawn)] {
+                for formulation in [Formulation::Relative, Formulation::Absolute] {
+                    let solution = Analysis::with(model, formulation).unwrap().run();
+                    assert!(solution.stop.is_none(), "{drawn} {off} {formulation:?}: {:?}", solution.stop);
+                    for (k, t) in draft.times.iter().enumerate() {
+                        let found = solution.measured.value(k, solution.measured.index("pivot").unwrap())[0];
+                        let error = (found + angle - arm_at(*t, side)).sin();
+                        // The spline deviates from the circle by less than this.
+                        assert!(error.abs() < 1e-6, "{drawn} {off} {formulation:?} at {t}: {found}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_length_of_a_point_on_its_curve_has_no_side() {
+    let with_length = |place: f64| {
+        let mut draft = cam_and_arm([ECCENTRICITY, place, 0.0]);
+        draft.joints[2] = draft.joints[2].clone().length(0.01);
+        Model::from_draft(&draft)
+    };
+    for on_curve in [0.03, 0.03 + 1e-9, 0.03 - 1e-9] {
+        let faults = with_length(on_curve).unwrap_err();
+        assert_eq!(faults.iter().map(|f| f.code).collect::<Vec<_>>(), ["HP0223"], "{faults:?}");
+        assert!(faults[0].message.contains("`cam` has no side"), "{faults:?}");
+    }
+    // Drawn beside the curve, the roller is assembled on that side.
+    for (place, radius) in [(0.031, 0.04), (0.029, 0.02)] {
+        let model = with_length(place).unwrap();
+        let solution = Analysis::new(&model).unwrap().run();
+        let turned = solution.measured.value(0, solution.measured.index("pivot").unwrap())[0];
+        let [x, y] = [ECCENTRICITY - ARM_PIVOT[0], place - ARM_PIVOT[1]];
+        let angle = y.atan2(x) + turned;
+        let [x, y] =
+            [x.hypot(y) * angle.cos() + ARM_PIVOT[0] - ECCENTRICITY, x.hypot(y) * angle.sin() + ARM_PIVOT[1]];
+        assert!((x.hypot(y) - radius).abs() < 1e-6, "{place}: {}", x.hypot(y));
+    }
 }
 
 /// Positions hold to 1e-13; differences over the best step (1e-5) see that.

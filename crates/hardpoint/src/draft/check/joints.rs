@@ -7,7 +7,9 @@ use crate::joint::{JointType, Need};
 use crate::model::{Curve, Direction, GROUND, Hardpoint, HardpointId, Joint, JointId};
 use crate::space::{Mat3, Pose, Vec3};
 
-use super::{Checker, Here, PERPENDICULAR_TOLERANCE, SAME_POINT, UNPLACED, degrees_between, frame_along};
+use super::{
+    Checker, Here, ON_CURVE, PERPENDICULAR_TOLERANCE, SAME_POINT, UNPLACED, degrees_between, frame_along,
+};
 
 /// Returns the default direction of the markers' x axis. For a mirror image across a global axis: the image of the
 /// original's default.
@@ -129,6 +131,9 @@ impl Checker<'_> {
         let (name, cut) = (name.clone(), j.cut);
         let at = at?;
         let curve = self.curve(j, kind, at, frames[0], here);
+        if let (Some(curve), Some(_)) = (&curve, length) {
+            self.check_side(j, curve, at, frames[0], here);
+        }
         if j.axis.is_some() && axis.is_none() || j.axis2.is_some() && axis2.is_none() {
             return None;
         }
@@ -218,6 +223,23 @@ impl Checker<'_> {
                 None
             }
         }
+    }
+
+    /// HP0223: a distance from a curve on which the point is drawn. The sign of round-off must not choose its side.
+    fn check_side(&mut self, j: &JointDraft, curve: &Curve, at: [HardpointId; 2], frame: Mat3, here: Here) {
+        let [carrier, follower] = at.map(|h| self.position(h));
+        let (Some(r), Some(follower)) = (carrier, follower) else { return };
+        let distance = curve.distance(Pose { rot: frame, r }.inverse().point(follower));
+        if distance.abs() > ON_CURVE * self.extent.size() {
+            return;
+        }
+        let name = &j.name;
+        let message = format!("the `length` of `{name}` has no side: its point is drawn on the curve");
+        self.fault("HP0223", here.key("length"), message)
+            .note("the point keeps this distance from the curve on the side on which it is drawn")
+            .help(
+                "draw the point on that side of the curve, or remove `length` if it is to stay on the curve",
+            );
     }
 
     /// HP0223: a length of a joint that is not a rod or follower, or a length that is not positive.
