@@ -69,6 +69,7 @@ same_features() {
     local tests others
     tests=$(features --workspace)
     others=$(features --edges normal,build; features --edges normal,build --package hardpoint-python --features shared)
+    others=$(echo "$others" | grep --invert-match '^hardpoint-python ')
     if others=$(echo "$others" | grep --line-regexp --fixed-strings --invert-match "$tests"); then
         echo "these are compiled twice; add the features that the tests ask for to shared/Cargo.toml:" >&2
         echo "$others" >&2

@@ -38,8 +38,8 @@ const LONGEST: f64 = 0.5;
 const SHORTEST: f64 = 1e-9;
 /// The same before it is known whether other openings describe the way better.
 const SHORTEST_AT_FIRST: f64 = 0.01;
-/// Ratio of the shortest parts before and after these openings turn out to be the better ones.
-const FEWER: f64 = 0.1;
+/// Factor of the shortest part each time that no other openings are found to be better.
+const SHORTER: f64 = 0.1;
 /// Maximum number of equilibria that a prediction uses.
 const PREDICTED_FROM: usize = 3;
 /// Maximum sum of the sizes of the weights of a prediction: 7 for uniform output times. A larger sum amplifies what
@@ -266,7 +266,7 @@ impl<'a> EquilibriumSolver<'a> {
 
     /// Permits shorter steps, since no other openings describe the way better so far.
     pub fn permit_shorter_steps(&mut self) {
-        self.shortest = f64::max(SHORTEST, FEWER * self.shortest);
+        self.shortest = f64::max(SHORTEST, SHORTER * self.shortest);
     }
 
     /// Part of the way to the first output time, and the time, of the equilibrium that was accepted last.
