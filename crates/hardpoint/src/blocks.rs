@@ -167,9 +167,11 @@ impl Blocks {
     /// Writes values of output time k, starting at `first`.
     #[inline(always)]
     pub fn set(&mut self, k: usize, first: usize, numbers: impl IntoIterator<Item = f64>) {
-        let (lines, lane) = (&mut self.block_mut(k)[first..], k % LANES);
-        for (n, x) in numbers.into_iter().enumerate() {
-            lines[n][lane] = x;
+        let (mut lines, lane) = (self.block_mut(k)[first..].iter_mut(), k % LANES);
+        // Neither `zip` nor `enumerate`: the iterators of bodies and coordinates are not inlined into these.
+        for x in numbers {
+            let Some(lanes) = lines.next() else { return };
+            lanes[lane] = x;
         }
     }
 
