@@ -39,8 +39,12 @@ pub(super) fn toe<T: Real>(e: Vec3<T>, side: T) -> T {
 
 /// `atan2(y, x)` of a part [y, x] of a vector with this square; NaN if the part is round-off beside the vector.
 fn bearing<T: Real>([y, x]: [T; 2], square: T) -> T {
-    let is_seen = (y * y + x * x).exceeds(square * T::constant(STILL * STILL));
-    if is_seen { y.atan2(x) } else { T::constant(f64::NAN) }
+    if is_seen(y * y + x * x, square) { y.atan2(x) } else { T::constant(f64::NAN) }
+}
+
+/// True if the square of a part is not round-off beside the square of the whole.
+fn is_seen<T: Real>(part: T, whole: T) -> bool {
+    part.exceeds(whole * T::constant(STILL * STILL))
 }
 
 /// `-asin(e_z)`.
@@ -398,8 +402,7 @@ const STILL: f64 = 1e-11;
 /// A rate along a driver, or a component, for division; NaN if it is round-off beside the motion, or the vector, with
 /// this square.
 pub(super) fn if_moving<T: Real>(rate: T, motion: T) -> T {
-    let moves = (rate * rate).exceeds(motion * T::constant(STILL * STILL));
-    if moves { rate } else { T::constant(f64::NAN) }
+    if is_seen(rate * rate, motion) { rate } else { T::constant(f64::NAN) }
 }
 
 /// Weight of a wheel's rise per rearward travel: its end's share of the force times wheelbase over height of the centre

@@ -241,8 +241,10 @@ impl Curve {
             let left = [-d[1], d[0]];
             (dot(left, [p[0] - c[0], p[1] - c[1]]) / dot(d, d).sqrt() - distance).abs()
         };
-        let feet = (0..n).map(|k| [sample(k), sample(k + 1)]).filter(|[a, b]| g(*a) * g(*b) <= 0.0);
-        let feet = feet.map(|[a, b]| self.nearest(p, 0.5 * (a + b))).filter(|u| off(*u) <= near);
+        let signed: Vec<f64> = (0..=n).map(|k| g(sample(k))).collect();
+        let changes = (0..n).filter(|k| signed[*k] * signed[k + 1] <= 0.0);
+        let feet = changes.map(|k| self.nearest(p, 0.5 * (sample(k) + sample(k + 1))));
+        let feet = feet.filter(|u| off(*u) <= near);
         feet.min_by(|a, b| off(*a).total_cmp(&off(*b))).unwrap_or_else(|| self.search(p))
     }
 
