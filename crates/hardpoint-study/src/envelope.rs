@@ -8,7 +8,6 @@
 //! since parts that are thinner than a cell have no triangles.
 
 mod request;
-mod surface;
 
 use std::cell::Cell;
 use std::ops::ControlFlow;
@@ -20,9 +19,9 @@ use hardpoint::run::{Analysis, Run, SweptShape};
 use hardpoint::space::Vec3;
 use hardpoint::topology::{Formulation, TopologyError};
 
+pub use hardpoint_search::Triangles;
+use hardpoint_search::{LeastOf, surface};
 pub use request::{Overrides, Request, Sweep};
-pub use surface::Triangles;
-use surface::{LeastOf, surface};
 
 use super::evaluation::StudyCost;
 use super::grid::each_half_row;

@@ -9,7 +9,7 @@ use hardpoint_tape::{Number, record};
 
 use crate::design::{BodyFixed, DesignMap};
 use crate::model::{
-    AxleMeasure, DriverId, GROUND, MeasureKind, Model, OutputSource, WheelId, loads, of_bodies,
+    AxleMeasure, AxleMotion, DriverId, GROUND, MeasureKind, Model, OutputSource, WheelId, loads, of_bodies,
 };
 use crate::motion::kinematics::State;
 use crate::motion::mechanism::Mechanism;
@@ -21,7 +21,7 @@ use crate::topology::Topology;
 
 use super::dexterity::dexterity;
 use super::step_values::{RecordedValue, RecordedValues};
-use super::wheel::{TravellingWheel, axle_roll_centre, if_moving};
+use super::wheel::{TravellingWheel, axle_roll_centre, if_moving, moved_together};
 use super::{Instant, StepValues, bodies_asked_for};
 
 /// Maximum number of combinations of a driver, a body and a variable for which slopes are recorded: each takes some
@@ -382,12 +382,29 @@ impl<T: Real> DriverAlone<'_, T> {
                 };
                 dexterity(jacobian, [drivers.len(), points.len()], *value)
             }
-            MeasureKind::Wheel { wheel: w, what } => wheel(first, 0, *w).measure(*what, &model.vehicle),
+            MeasureKind::Wheel { wheel: w, what } => {
+                let own = wheel(first, 0, *w);
+                let travelling = match (second, model.moved_with(*w, *what)) {
+                    (Some(second), Some(other)) => {
+                        let other = [wheel(first, 1, other), wheel(second, 1, other)];
+                        let [own, _] = moved_together([own, wheel(second, 0, *w)], other, what.motion());
+                        own
+                    }
+                    (_, None) | (None, _) => own,
+                };
+                travelling.measure(*what, &model.vehicle)
+            }
             MeasureKind::Axle { axle, what } => {
-                // Each wheel goes up and down by its own driver; they may be one.
                 let [left, right] = model.axles[axle.0].wheels;
                 let Some(second) = second else { return unknown };
-                let (y, height) = axle_roll_centre([wheel(first, 0, left), wheel(second, 1, right)]);
+                let by_one = model.wheels[left.0].bump == model.wheels[right.0].bump;
+                let wheels = if by_one {
+                    [wheel(first, 0, left), wheel(second, 1, right)]
+                } else {
+                    let along = |d: usize, id: WheelId| [wheel(first, d, id), wheel(second, d, id)];
+                    moved_together(along(0, left), along(1, right), AxleMotion::Roll)
+                };
+                let (y, height) = axle_roll_centre(wheels);
                 if *what == AxleMeasure::RollCentreY { y } else { height }
             }
             of_bodies!() | loads!() | MeasureKind::Compliance { .. } => unknown,

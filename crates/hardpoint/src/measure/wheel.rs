@@ -10,7 +10,7 @@
 //! | `off_kingpin(P)` | d(P) | |
 //! | `.d` of a number of [`TravellingWheel`], `carrier` | X', w and v | per unit of the driver q, (11) with `L_u = 1` |
 
-use crate::model::{TorqueReaction, Vehicle, VehicleEnd, WheelMeasure, WheelRequirement};
+use crate::model::{AxleMotion, TorqueReaction, Vehicle, VehicleEnd, WheelMeasure, WheelRequirement};
 use crate::number::{self, Dual, Real};
 use crate::space::{Twist, Vec3};
 
@@ -324,6 +324,30 @@ impl<T: Real> TravellingWheel<T> {
 }
 
 impl<T: Real> TravellingWheel<T> {
+    /// The same wheel while both drivers move by these amounts.
+    fn along(self, other: Self, [p, q]: [T; 2]) -> Self {
+        let sum = |a: Dual<T>, b: Dual<T>| Dual { v: a.v, d: a.d * p + b.d * q };
+        let vector =
+            |a: Vec3<Dual<T>>, b: Vec3<Dual<T>>| Vec3::new(sum(a.x, b.x), sum(a.y, b.y), sum(a.z, b.z));
+        let pair = |[a, b]: [Vec3<Dual<T>>; 2], [c, d]: [Vec3<Dual<T>>; 2]| [vector(a, c), vector(b, d)];
+        let (one, two) = (self.wheel, other.wheel);
+        let [w, v] = [(self.carrier.w, other.carrier.w), (self.carrier.v, other.carrier.v)]
+            .map(|(a, b)| a * p + b * q);
+        Self {
+            wheel: WheelAt {
+                centre: vector(one.centre, two.centre),
+                spin_axis: vector(one.spin_axis, two.spin_axis),
+                radius: one.radius,
+                side: one.side,
+                kingpin: one.kingpin.zip(two.kingpin).map(|(a, b)| pair(a, b)),
+                planes: one.planes.zip(two.planes).map(|([a, b], [c, d])| [pair(a, c), pair(b, d)]),
+                spring: one.spring.zip(two.spring).map(|(a, b)| sum(a, b)),
+            },
+            carrier: Twist { w, v },
+            ..self
+        }
+    }
+
     /// The rate of a height at the wheel, for division; NaN if the driver does not lift the wheel.
     fn if_rising(&self, rate: T) -> T {
         let (v, w) = (self.wheel.centre.map(|x| x.d), self.carrier.w * self.wheel.radius.v);
@@ -389,6 +413,26 @@ impl<T: Real> TravellingWheel<T> {
             spring: None,
         }
     }
+}
+
+/// Two wheels of an axle, each along the driver of the first and along that of the second, while their contact points
+/// rise alike or, as the axle rolls, one falls as the other rises.
+pub(super) fn moved_together<T: Real>(
+    first: [TravellingWheel<T>; 2],
+    second: [TravellingWheel<T>; 2],
+    motion: AxleMotion,
+) -> [TravellingWheel<T>; 2] {
+    // C_z' of each wheel, by each driver
+    let rates = |wheel: &[TravellingWheel<T>; 2]| [0, 1].map(|k| wheel[k].wheel.contact().z.d);
+    let ([a, b], [c, d]) = (rates(&first), rates(&second));
+    // a p + b q = 1,  c p + d q = +-1,  times the determinant: no measure depends on how fast they move
+    let weights = match motion {
+        AxleMotion::OneWheel => [T::one(), T::zero()],
+        AxleMotion::Heave => [d - b, a - c],
+        AxleMotion::Roll => [d + b, -(a + c)],
+    };
+    let [first, second] = [first, second].map(|[one, other]| one.along(other, weights));
+    [first, second]
 }
 
 /// A body that is seen to turn by less than this part of its turn has its instant centre at infinity: some hundred

@@ -3,8 +3,8 @@
 use crate::expression::Expression;
 use crate::joint::Quantity;
 use crate::model::{
-    Axes, AxleId, AxleMeasure, BodyId, ClearanceId, Direction, Driver, DriverId, ElementId, HardpointId,
-    JointId, Model, PointId, Side, WheelId, WheelMeasure, WheelRequirement,
+    Axes, AxleId, AxleMeasure, AxleMotion, BodyId, ClearanceId, Direction, Driver, DriverId, ElementId,
+    HardpointId, JointId, Model, PointId, Side, Wheel, WheelId, WheelMeasure, WheelRequirement,
 };
 use crate::space::{Angles, Real, Vec3};
 
@@ -419,7 +419,9 @@ macro_rules! in_models {
             pub(crate) fn bodies_of(&self, measure: &Measure) -> Vec<BodyId> {
                 match &measure.kind {
                     $(MeasureKind::$variant { $($field),* } => [$($field.bodies(self)),*].concat(),)*
-                    MeasureKind::Wheel { wheel, .. } => wheel.bodies(self),
+                    MeasureKind::Wheel { wheel, what } => {
+                        [wheel.bodies(self), self.moved_with(*wheel, *what).bodies(self)].concat()
+                    }
                     MeasureKind::Axle { axle, .. } => self.axles[axle.0].wheels.map(|w| w.bodies(self)).concat(),
                 }
             }
@@ -1189,7 +1191,8 @@ impl Model {
         self.depends_on_driver(measure) || kind.is_load() || matches!(kind, MeasureKind::Compliance { .. })
     }
 
-    /// The drivers along each of which a measure needs a derivative, if it does: of an axle that of each wheel.
+    /// The drivers along each of which a measure needs a derivative, if it does: of an axle that of each wheel, of a wheel
+    /// also that of the wheel that moves with it.
     pub(crate) fn drivers_alone(&self, measure: usize) -> impl Iterator<Item = DriverId> {
         let of_wheel = |wheel: WheelId, need: WheelRequirement| self.wheels[wheel.0].driver(need);
         let list = |drivers: &'_ Option<Vec<DriverId>>| drivers.clone().unwrap_or_default();
@@ -1198,7 +1201,11 @@ impl Model {
                 (Some(*driver), None, [list(together), list(opposed)].concat())
             }
             MeasureKind::Dexterity { drivers, .. } => (None, None, drivers.clone()),
-            MeasureKind::Wheel { wheel, what } => (of_wheel(*wheel, what.needs()), None, Vec::new()),
+            MeasureKind::Wheel { wheel, what } => {
+                let other = self.moved_with(*wheel, *what);
+                let other = other.and_then(|other| of_wheel(other, WheelRequirement::Bump));
+                (of_wheel(*wheel, what.needs()), other, Vec::new())
+            }
             MeasureKind::Axle { axle, .. } => {
                 let [left, right] =
                     self.axles[axle.0].wheels.map(|wheel| of_wheel(wheel, WheelRequirement::Bump));
@@ -1208,6 +1215,28 @@ impl Model {
         };
         let depends = self.depends_on_driver(measure);
         one.into_iter().chain(other).chain(all).filter(move |_| depends)
+    }
+
+    /// The other wheel of an axle, if a measure of a wheel is taken while both rise alike or the axle rolls: each must
+    /// have a driver of its own that is held. Without an axle, wheels of both sides on one body belong together.
+    pub(crate) fn moved_with(&self, wheel: WheelId, what: WheelMeasure) -> Option<WheelId> {
+        if what.motion() == AxleMotion::OneWheel {
+            return None;
+        }
+        let held = |wheel: WheelId| {
+            let released = self.equilibrium.iter().flat_map(|equilibrium| &equilibrium.released);
+            self.wheels[wheel.0].bump.filter(|bump| !released.clone().any(|driver| driver == bump))
+        };
+        let of_axle = self.axles.iter().map(|axle| axle.wheels).find(|wheels| wheels.contains(&wheel));
+        let other = match of_axle {
+            Some([left, right]) => Some(if left == wheel { right } else { left }),
+            None => {
+                let own = &self.wheels[wheel.0];
+                let is_other = |w: &Wheel| w.body == own.body && w.side != own.side;
+                self.wheels.iter().position(is_other).map(WheelId)
+            }
+        };
+        other.filter(|other| held(*other).is_some_and(|bump| Some(bump) != self.wheels[wheel.0].bump))
     }
 
     /// Dimension of a driver's force: its product with the driven quantity is work.
@@ -1248,7 +1277,9 @@ impl Model {
             MeasureKind::Toe { body, spin_axis } | MeasureKind::Camber { body, spin_axis } => {
                 [Some((body, spin_axis)), None]
             }
-            MeasureKind::Wheel { wheel, .. } => [of_wheel(wheel), None],
+            MeasureKind::Wheel { wheel, what } => {
+                [of_wheel(wheel), self.moved_with(wheel, what).and_then(of_wheel)]
+            }
             MeasureKind::Axle { axle, .. } => self.axles[axle.0].wheels.map(of_wheel),
             MeasureKind::Angle { from, to, .. } | MeasureKind::TransmissionAngle { from, to } => [from, to]
                 .map(|ray| match ray {

@@ -61,7 +61,7 @@ pub use tolerancing::{
     AllocationRule, AllocationSettings, Correlation, Scatter, Tolerance, ToleranceSettings,
 };
 pub use wheel::{
-    ArmPlane, Axle, AxleMeasure, Side, TorqueReaction, Vehicle, VehicleEnd, Wheel, WheelMeasure,
+    ArmPlane, Axle, AxleMeasure, AxleMotion, Side, TorqueReaction, Vehicle, VehicleEnd, Wheel, WheelMeasure,
     WheelRequirement,
 };
 

@@ -56,6 +56,17 @@ impl Wheel {
     }
 }
 
+/// The motion of an axle along which a measure of one of its wheels is taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AxleMotion {
+    /// The driver of the wheel alone; that of the other wheel is held.
+    OneWheel,
+    /// The other contact point falls by as much as that of the wheel rises.
+    Roll,
+    /// Both contact points rise alike.
+    Heave,
+}
+
 /// The plane in which an arm lets its outer joint go, as textbooks construct instant centres.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArmPlane {
@@ -379,6 +390,62 @@ impl WheelMeasure {
     /// True if it needs the wheel's kingpin.
     pub fn needs_kingpin(self) -> bool {
         self.needs() == WheelRequirement::Kingpin
+    }
+
+    /// Motion of the axle along which it is taken, if it depends on a driver.
+    pub(crate) fn motion(self) -> AxleMotion {
+        match self {
+            Self::RollCentreHeight
+            | Self::RollCentreHeightGeometric
+            | Self::FrontCentreY
+            | Self::FrontCentreZ
+            | Self::SwingArmFront => AxleMotion::Roll,
+            Self::SideCentreX
+            | Self::SideCentreZ
+            | Self::SwingArmSide
+            | Self::AntiDive
+            | Self::AntiLift
+            | Self::AntiSquat
+            | Self::AntiRise => AxleMotion::Heave,
+            Self::Toe
+            | Self::Camber
+            | Self::CamberFront
+            | Self::SteerAngle
+            | Self::Caster
+            | Self::KingpinInclination
+            | Self::ScrubRadius
+            | Self::SpindleOffset
+            | Self::CasterTrail
+            | Self::MechanicalTrail
+            | Self::HubTrail
+            | Self::WheelTravel
+            | Self::WheelRecession
+            | Self::HalfTrack
+            | Self::HalfTrackChange
+            | Self::ContactX
+            | Self::ContactY
+            | Self::ContactZ
+            | Self::BumpSteer
+            | Self::BumpCamber
+            | Self::BumpRecession
+            | Self::BumpScrub
+            | Self::InstantAxisX
+            | Self::InstantAxisY
+            | Self::InstantAxisZ
+            | Self::MotionRatio
+            | Self::PlaneCentreFrontY
+            | Self::PlaneCentreFrontZ
+            | Self::PlaneCentreSideX
+            | Self::PlaneCentreSideZ
+            | Self::RollCentreHeightPlanes
+            | Self::VirtualCaster
+            | Self::VirtualKingpinInclination
+            | Self::VirtualScrubRadius
+            | Self::VirtualSpindleOffset
+            | Self::VirtualCasterTrail
+            | Self::VirtualMechanicalTrail
+            | Self::VirtualHubTrail => AxleMotion::OneWheel,
+        }
     }
 
     /// Measure of the kingpin that corresponds to this one of the virtual steering axis.

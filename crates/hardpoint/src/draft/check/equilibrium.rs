@@ -68,6 +68,7 @@ impl Checker<'_> {
                 self.fault("HP0261", here.key(direction), message).note(note).help(help);
             }
         }
+        self.model.equilibrium = Some(Equilibrium { released: released.clone() });
         for index in 0..draft.measures.len() {
             let k = self.model.measures.iter().position(|m| m.name == draft.measures[index].name);
             let found = k.map(|k| &self.model.measures[k]);
@@ -121,6 +122,5 @@ impl Checker<'_> {
                     .help("hold the driver, or remove the measure");
             }
         }
-        self.model.equilibrium = Some(Equilibrium { released });
     }
 }
