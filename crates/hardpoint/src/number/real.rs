@@ -187,37 +187,44 @@ pub trait Real:
     /// Sine and cosine of an angle of any size, rad; for plain numbers, those of the standard library.
     fn sin_cos_of_any(self) -> (Self, Self);
 
-    /// Sine and cosine of an angle, rad, to about one unit in the last place for |x| up to 1e5 turns.
-    ///
-    /// The angle is reduced by multiples of pi/2 in three parts (Cody and Waite), then evaluated by the polynomials of
-    /// fdlibm's kernels.
+    /// Sine and cosine of an angle, rad, to about one unit in the last place for |x| up to 1e5 turns; for plain numbers,
+    /// of any size.
     #[inline(always)]
-    #[expect(clippy::excessive_precision, reason = "the constants are written as published")]
     fn sin_cos(self) -> (Self, Self) {
-        const PIO2_1: f64 = 1.570_796_326_734_125_6;
-        const PIO2_2: f64 = 6.077_100_506_303_966e-11;
-        const PIO2_3: f64 = 2.022_266_248_795_950_6e-21;
-        let c = Self::constant;
-        let n = (self * c(std::f64::consts::FRAC_2_PI)).round();
-        let r = ((self - n * c(PIO2_1)) - n * c(PIO2_2)) - n * c(PIO2_3);
-        let z = r * r;
-        let s = c(-2.505_076_025_340_686_3e-8) + z * c(1.589_690_995_211_55e-10);
-        let s = c(8.333_333_333_322_489e-3)
-            + z * (c(-1.984_126_982_985_795e-4) + z * (c(2.755_731_370_707_006_8e-6) + z * s));
-        let sin = r + r * z * (c(-1.666_666_666_666_663_2e-1) + z * s);
-        let k = c(2.087_572_321_298_175e-9) + z * c(-1.135_964_755_778_819_5e-11);
-        let k = c(-1.388_888_888_887_411e-3)
-            + z * (c(2.480_158_728_947_673e-5) + z * (c(-2.755_731_435_139_066_3e-7) + z * k));
-        let half = c(0.5) * z;
-        let cos = c(1.0) - (half - z * z * (c(4.166_666_666_666_66e-2) + z * k));
-        // The quadrant as numbers 0 or +-1, without branches: (cos, sin) of n * 90 degrees.
-        let q = n - c(4.0) * (n * c(0.25)).round(); // -2, -1, 0, 1, 2
-        let odd = q * q * (c(4.0) - q * q) * c(1.0 / 3.0); // 1 where |q| = 1, else 0
-        let odd = odd.round();
-        let quarter_sin = q * odd; // +-1 where |q| = 1
-        let quarter_cos = c(1.0) - odd - c(2.0) * (q * q * (q * q - c(1.0)) * c(1.0 / 12.0)).round();
-        (sin * quarter_cos + cos * quarter_sin, cos * quarter_cos - sin * quarter_sin)
+        sin_cos_within(self)
     }
+}
+
+/// Sine and cosine of an angle, rad, to about one unit in the last place for |x| up to 1e5 turns.
+///
+/// The angle is reduced by multiples of pi/2 in three parts (Cody and Waite), then evaluated by the polynomials of
+/// fdlibm's kernels.
+#[inline(always)]
+#[expect(clippy::excessive_precision, reason = "the constants are written as published")]
+fn sin_cos_within<T: Real>(angle: T) -> (T, T) {
+    const PIO2_1: f64 = 1.570_796_326_734_125_6;
+    const PIO2_2: f64 = 6.077_100_506_303_966e-11;
+    const PIO2_3: f64 = 2.022_266_248_795_950_6e-21;
+    let c = T::constant;
+    let n = (angle * c(std::f64::consts::FRAC_2_PI)).round();
+    let r = ((angle - n * c(PIO2_1)) - n * c(PIO2_2)) - n * c(PIO2_3);
+    let z = r * r;
+    let s = c(-2.505_076_025_340_686_3e-8) + z * c(1.589_690_995_211_55e-10);
+    let s = c(8.333_333_333_322_489e-3)
+        + z * (c(-1.984_126_982_985_795e-4) + z * (c(2.755_731_370_707_006_8e-6) + z * s));
+    let sin = r + r * z * (c(-1.666_666_666_666_663_2e-1) + z * s);
+    let k = c(2.087_572_321_298_175e-9) + z * c(-1.135_964_755_778_819_5e-11);
+    let k = c(-1.388_888_888_887_411e-3)
+        + z * (c(2.480_158_728_947_673e-5) + z * (c(-2.755_731_435_139_066_3e-7) + z * k));
+    let half = c(0.5) * z;
+    let cos = c(1.0) - (half - z * z * (c(4.166_666_666_666_66e-2) + z * k));
+    // The quadrant as numbers 0 or +-1, without branches: (cos, sin) of n * 90 degrees.
+    let q = n - c(4.0) * (n * c(0.25)).round(); // -2, -1, 0, 1, 2
+    let odd = q * q * (c(4.0) - q * q) * c(1.0 / 3.0); // 1 where |q| = 1, else 0
+    let odd = odd.round();
+    let quarter_sin = q * odd; // +-1 where |q| = 1
+    let quarter_cos = c(1.0) - odd - c(2.0) * (q * q * (q * q - c(1.0)) * c(1.0 / 12.0)).round();
+    (sin * quarter_cos + cos * quarter_sin, cos * quarter_cos - sin * quarter_sin)
 }
 
 /// Largest angle, rad, for which [`Real::sin_cos`] is accurate to the last place.
@@ -277,6 +284,10 @@ impl Real for f64 {
         f64::sin_cos(self)
     }
     #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        if self.abs() <= LARGEST_ANGLE { sin_cos_within(self) } else { f64::sin_cos(self) }
+    }
+    #[inline(always)]
     fn round(self) -> Self {
         // Adding and subtracting 1.5 * 2^52 rounds to the nearest integer without the library call that
         // `round_ties_even` is on a baseline CPU; exact for |x| < 2^51.
@@ -301,5 +312,11 @@ mod tests {
             let (s, c) = Real::sin_cos(x);
             assert!((s - x.sin()).abs() < 4e-16 && (c - x.cos()).abs() < 4e-16, "at {k} quarters");
         }
+        // Beyond the range of the polynomials, also of orientations that a file states
+        for x in [1e6, 1e12, -1e16, 1e19, 1e200] {
+            assert_eq!(Real::sin_cos(x), (x.sin(), x.cos()));
+            assert!(crate::space::Mat3::about(crate::space::Vec3::AXES[2], x).cols[0].norm() < 1.0 + 4e-16);
+        }
+        assert!(Real::sin_cos(f64::INFINITY).0.is_nan());
     }
 }
