@@ -97,12 +97,7 @@ impl Shapes {
         name: &str,
         bytes: &[u8],
     ) -> Result<(), String> {
-        let triangles: Vec<Triangle> = if name.to_ascii_lowercase().ends_with(".dae") {
-            crate::collada::triangles(&crate::decoded(bytes))?
-        } else {
-            hardpoint_file::triangles(name, bytes)?.into_iter().map(|t| t.map(Vec3::from)).collect()
-        };
-        self.triangles(body, place, linear, triangles.into_iter());
+        self.triangles(body, place, linear, in_file(name, bytes)?.into_iter());
         Ok(())
     }
 
@@ -115,8 +110,8 @@ impl Shapes {
         triangles: impl Iterator<Item = Triangle>,
     ) {
         let list = self.bodies.entry(body).or_default();
-        let put = |p: Vec3| place.point(linear * p);
-        list.extend(triangles.take(MOST.saturating_sub(list.len())).map(|t| t.map(put)));
+        let put = |t: Triangle| mapped(linear, t).map(|p| place.point(p));
+        list.extend(triangles.take(MOST.saturating_sub(list.len())).map(put));
     }
 
     /// Returns a file for each body with a shape, in a folder, and sets the meshes of the bodies.
@@ -140,6 +135,24 @@ impl Shapes {
         }
         files
     }
+}
+
+/// Returns the triangles of a file.
+///
+/// # Errors
+/// Returns the reason why the file cannot be read.
+pub fn in_file(name: &str, bytes: &[u8]) -> Result<Vec<Triangle>, String> {
+    if name.to_ascii_lowercase().ends_with(".dae") {
+        return crate::collada::triangles(&crate::decoded(bytes));
+    }
+    Ok(hardpoint_file::triangles(name, bytes)?.into_iter().map(|t| t.map(Vec3::from)).collect())
+}
+
+/// Returns a triangle after a linear map; one that mirrors reverses the order of the corners, so that a surface keeps
+/// its outer side.
+pub fn mapped(linear: Mat3, [a, b, c]: Triangle) -> Triangle {
+    let corners = if linear.is_mirror() { [a, c, b] } else { [a, b, c] };
+    corners.map(|p| linear * p)
 }
 
 /// Returns a name without characters that are invalid in file names.

@@ -142,6 +142,16 @@ fn every_kind_of_file_gives_the_same_triangles() {
         assert_eq!((mesh.file.as_str(), mesh.vertices.len()), (name, 4));
         assert_eq!(corners(&mesh), expected, "{name}");
     }
+    // A node that mirrors reverses the orientation of its triangles.
+    let mirrored = gltf_text("").replace("\"scale\":[2,2,2]", "\"scale\":[2,-2,2]");
+    let reversed: Vec<[f64; 3]> = faces()
+        .map(|[a, b, c]| [a, c, b])
+        .as_flattened()
+        .iter()
+        .map(|at| at.map(f64::from))
+        .map(|[x, y, z]| [x, 0.0 - y, z])
+        .collect();
+    assert_eq!(corners(&mesh_of("arm.glb", &glb(&mirrored), "\"arm.glb\"")), reversed);
     // Metres of the file beside millimetres of the model.
     let mesh = mesh_of("arm.obj", &obj(), "{ file = \"arm.obj\", scale = 1000, frame = \"body\" }");
     assert_eq!(mesh.vertices[1].to_array(), [0.0, 20.0, 0.0]);

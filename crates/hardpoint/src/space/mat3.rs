@@ -36,6 +36,13 @@ impl Mat3<f64> {
         Self::about(v * (1.0 / angle), angle)
     }
 
+    /// True if this linear map, not necessarily a rotation, mirrors: its determinant is negative. The orientation of
+    /// triangles is then reversed.
+    pub fn is_mirror(self) -> bool {
+        let [f, g, h] = self.cols;
+        f.cross(g).dot(h) < 0.0
+    }
+
     /// Angle of the rotation from this orientation to another, rad, 0 to pi.
     pub fn angle_to(self, o: Self) -> f64 {
         let d = self.transpose() * o;

@@ -7,6 +7,7 @@ use gltf::accessor::{DataType, Dimensions};
 use gltf::buffer::Source;
 use gltf::mesh::Mode;
 use gltf::{Accessor, Gltf, Node, Primitive, Semantic};
+use hardpoint::space::{Mat3, Vec3};
 
 use super::{MOST_TRIANGLES, Triangles};
 
@@ -129,11 +130,13 @@ fn add(
         let m = world_from_node;
         Some([0, 1, 2].map(|row| m[3][row] + (0..3).map(|k| m[k][row] * local[k]).sum::<f64>()))
     };
+    let [x, y, z, _] = world_from_node.map(|[x, y, z, _]| Vec3::new(x, y, z));
+    let is_mirrored = Mat3 { cols: [x, y, z] }.is_mirror();
     for triangle in order.chunks_exact(3) {
         let [Some(a), Some(b), Some(c)] = [&triangle[0], &triangle[1], &triangle[2]].map(at) else {
             return Err("a triangle has a vertex that is not there".into());
         };
-        into.push([a, b, c])?;
+        into.push(if is_mirrored { [a, c, b] } else { [a, b, c] })?;
     }
     Ok(())
 }
