@@ -33,23 +33,24 @@ pub fn possible_masses(model: &Model) -> Vec<Option<WrittenMass>> {
 }
 
 /// Mass properties of all bodies, each with a mass and with moments of inertia, for programs that require both. A point
-/// has the moments of a ball with the radius of gyration `radius`, a body without mass a small part of the lightest
-/// mass.
+/// has the moments of a ball with the radius of gyration `radius`; a body without mass is such a point with a small
+/// part of the lightest mass.
 pub fn positive_masses(model: &Model, radius: f64) -> Vec<WrittenMass> {
     let found = possible_masses(model);
     let lightest = found.iter().flatten().map(|m| m.mass.mass).reduce(f64::min);
     let written = |(body, found): (usize, &Option<WrittenMass>)| {
-        let Some(WrittenMass { mass, change }) = *found else {
-            let mass = lightest.map_or(1.0, |lightest| NEGLIGIBLE * lightest);
+        let none = || {
             let centre = model.bodies[body].frame.r;
-            // In a model without masses, unit inertia to be replaced.
-            let moment = lightest.map_or(1.0, |_| mass * model.size().powi(2));
-            let inertia = diagonal([moment; 3]);
-            // That no body has a mass is a single report.
-            let change =
-                lightest.map(|_| "it has no mass: a thousandth of the lightest body's mass is written");
-            return WrittenMass { mass: BodyMass { mass, centre, inertia }, change };
+            let Some(lightest) = lightest else {
+                // Unit inertia to be replaced. That no body has a mass is a single report.
+                let inertia = diagonal([1.0; 3]);
+                return WrittenMass { mass: BodyMass { mass: 1.0, centre, inertia }, change: None };
+            };
+            let mass = BodyMass { mass: NEGLIGIBLE * lightest, centre, inertia: diagonal([0.0; 3]) };
+            let why = "it has no mass: a point with a thousandth of the lightest body's mass is written";
+            WrittenMass { mass, change: Some(why) }
         };
+        let WrittenMass { mass, change } = found.unwrap_or_else(none);
         // Of a ball, each second moment is half of a moment of inertia.
         let ball = 0.5 * mass.mass * radius.powi(2);
         let raised = with_second_moments(mass, [0.5 * ball, ball]);
@@ -119,6 +120,24 @@ mod tests {
 
     fn body(inertia: Mat3) -> BodyMass {
         BodyMass { mass: 2.0, centre: Vec3::ZERO, inertia }
+    }
+
+    #[test]
+    fn a_body_without_mass_is_a_small_part_of_the_lightest_one_in_mass_and_inertia() {
+        let text = "units = { length = \"mm\" }\n[hardpoints]\nA = [0, 0, 0]\nB = [900, 0, 0]\n[bodies]\narm = {}\nlink = {}\n\
+                    [joints]\na = { type = \"revolute\", bodies = [\"ground\", \"arm\"], at = \"A\", axis = \"z\" }\n\
+                    b = { type = \"revolute\", bodies = [\"arm\", \"link\"], at = \"B\", axis = \"z\" }\n\
+                    [drivers]\na = { joint = \"a\", law = \"t\" }\nb = { joint = \"b\", law = 0 }\n\
+                    [masses]\nm = { type = \"rigid\", centre = { body = \"arm\", at = [9, 0, 0] }, mass = 2, ixx = 0.002, iyy = 0.003, izz = 0.004 }\n";
+        let file = hardpoint_file::parse(text, "m.toml").unwrap();
+        let [_, arm, link] = positive_masses(&file.model, 1e-3 * file.model.size())[..] else { panic!() };
+        assert_eq!((arm.mass.mass, arm.change), (2.0, None));
+        assert_eq!(link.mass.mass, 0.002);
+        assert!(link.change.is_some_and(|why| why.contains("thousandth")));
+        for column in link.mass.inertia.cols {
+            let moment = column.norm();
+            assert!(moment > 0.0 && moment < 1e-3 * 0.002, "{moment}");
+        }
     }
 
     #[test]
