@@ -5,17 +5,40 @@ use crate::mechanism::{Case, Law, Mechanism};
 use crate::report::ImportLog;
 
 /// Travel of the wheels in heave or bump and in roll, and of the rack, mm.
-const HEAVE: f64 = 60.0;
+pub const HEAVE: f64 = 60.0;
 const ROLL: f64 = 40.0;
 const RACK: f64 = 30.0;
 /// Fractions of the travel that are tried in order, since a mechanism may lock before.
 const PARTS: [f64; 3] = [1.0, 0.5, 0.25];
 
+/// Returns an oscillation by a travel in mm.
+pub fn oscillation(m: &Mechanism, travel: f64) -> String {
+    format!("{}*sin(2*pi*t)", finish::rounded(travel * m.per_mm()))
+}
+
+/// Reduces the vertical motion of the wheels if the mechanism locks before its end.
+fn shorten_bumps(m: &mut Mechanism, notes: &mut ImportLog, bumps: &[usize]) {
+    let shorter = |part: f64| {
+        let mut shorter = m.clone();
+        let law = oscillation(m, part * HEAVE);
+        bumps.iter().for_each(|driver| shorter.drivers[*driver].law = Law::Text(law.clone()));
+        (shorter, law)
+    };
+    let found = PARTS.into_iter().map(|part| (part, shorter(part))).find(|(_, (m, _))| finish::moves(m));
+    let Some((part, (shorter, law))) = found.filter(|(part, _)| *part < 1.0) else { return };
+    *m = shorter;
+    for driver in bumps {
+        let why = format!("the mechanism locks within {HEAVE} mm: {part} of it, law `{law}`");
+        notes.approximated("motion", &m.drivers[*driver].name, None, why);
+    }
+}
+
 /// Adds the cases of a vehicle: both wheels in the same direction (heave), in opposite directions (roll), and steering.
-/// A single motion needs no case.
+/// A single motion needs no case. Travels that the mechanism does not reach are reduced.
 pub fn add_vehicle_cases(m: &mut Mechanism, notes: &mut ImportLog) {
     let mut bumps: Vec<usize> = m.wheels.iter().map(|w| w.bump).collect();
     bumps.dedup();
+    shorten_bumps(m, notes, &bumps);
     let mut wanted: Vec<(&'static str, Vec<(usize, f64)>)> = match bumps[..] {
         [left, right] => {
             vec![("heave", vec![(left, HEAVE), (right, HEAVE)]), ("roll", vec![(left, ROLL), (right, -ROLL)])]
@@ -29,7 +52,7 @@ pub fn add_vehicle_cases(m: &mut Mechanism, notes: &mut ImportLog) {
     }
     for (name, travels) in wanted {
         let case = |part: f64| {
-            let law = |travel: f64| format!("{}*sin(2*pi*t)", finish::rounded(part * travel * m.per_mm()));
+            let law = |travel: f64| oscillation(m, part * travel);
             Case { name, laws: travels.iter().map(|(driver, travel)| (*driver, law(*travel))).collect() }
         };
         match PARTS.into_iter().map(case).find(|case| moves(m, case)) {

@@ -79,15 +79,16 @@ pub fn bushing(
         notes.refused(BUSHING, &name, at, why);
         return;
     }
+    // `DOF` has the same keys, for the directions that the joint leaves free: of these it has rotations only.
+    const KEYS: [&str; 4] =
+        ["Stiffness Linear", "Stiffness Rotational", "Damping Linear", "Damping Rotational"];
     for (key, at, _) in data.entries() {
-        let known =
-            ["Stiffness Linear", "Stiffness Rotational", "Damping Linear", "Damping Rotational", "DOF"];
-        if !known.contains(&key.as_str()) {
+        if !KEYS.contains(&key.as_str()) && key != "DOF" {
             notes.not_understood(key, &name, Some(*at), "unknown key of a bushing");
         }
     }
     for (key, at, _) in data.get("DOF").into_iter().flat_map(Tree::entries) {
-        if !["Stiffness Rotational", "Damping Rotational", "Damping Linear"].contains(&key.as_str()) {
+        if !KEYS.contains(&key.as_str()) {
             notes.not_understood(key, &name, Some(*at), "unknown key of the `DOF` of a bushing");
         }
     }
@@ -126,10 +127,10 @@ impl Inertial {
         let mass = part.get("Mass")?.number()?;
         let vector = |keys: [&str; 3]| keys.iter().find_map(|key| part.get(key)?.vector());
         let moments = vector(["Inertia", "Moments of Inertia", "Inertia Moments"]);
-        let [xy, yz, zx] = vector(["Products of Inertia", "Inertia Products", ""]).unwrap_or_default();
-        // In Chrono, products of inertia are entries of the matrix.
+        // In Chrono, products of inertia are the entries xy, xz, yz of the matrix.
+        let [xy, xz, yz] = vector(["Products of Inertia", "Inertia Products", ""]).unwrap_or_default();
         let matrix =
-            |[x, y, z]: [f64; 3]| Mat3 { cols: [[x, xy, zx], [xy, y, yz], [zx, yz, z]].map(Vec3::from) };
+            |[x, y, z]: [f64; 3]| Mat3 { cols: [[x, xy, xz], [xy, y, yz], [xz, yz, z]].map(Vec3::from) };
         Some(Self { mass, inertia: moments.map(matrix) })
     }
 }

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use hardpoint::model::VehicleEnd;
 use hardpoint::space::Vec3;
 
+use crate::cases;
 use crate::markers::ElementSource;
 use crate::mechanism::{Coordinate, Drives, Force, ForceOn, GROUND, Joint, Law, Mechanism, Spring, Wheel};
 use crate::report::{ImportLog, SourceSpan};
@@ -275,6 +276,9 @@ const NAMES: &[(Role, &[&str])] = &[
             "shock_upper",
             "damper_top",
             "dc",
+            "damper_frame",
+            "shock_frame",
+            "shock_chassis",
         ],
     ),
     (
@@ -292,6 +296,8 @@ const NAMES: &[(Role, &[&str])] = &[
             "damper_foot",
             "damper_bottom",
             "rd",
+            "damper_axle",
+            "shock_axle",
         ],
     ),
     (
@@ -306,6 +312,7 @@ const NAMES: &[(Role, &[&str])] = &[
             "spring_upper_seat",
             "spring_upper",
             "spring_top",
+            "spring_frame",
         ],
     ),
     (
@@ -320,11 +327,15 @@ const NAMES: &[(Role, &[&str])] = &[
             "spring_lower_seat",
             "spring_lower",
             "spring_bottom",
+            "spring_axle",
         ],
     ),
     (Role::TrailingA, &["trailing_arm_pivot_a", "trailing_arm_inner", "trailing_arm_front"]),
     (Role::TrailingB, &["trailing_arm_pivot_b", "trailing_arm_outer", "trailing_arm_rear"]),
 ];
+
+/// Explanation of a hardpoint whose name has no role.
+pub const ONLY_LISTED: &str = "no member follows from its name: the hardpoint is only listed";
 
 /// Returns a name in lower case, with `_` between words.
 pub fn plain(name: &str) -> String {
@@ -419,8 +430,6 @@ pub struct Corner {
 /// Ends of a spring: body and point.
 type Ends = [(usize, Vec3); 2];
 
-/// Default bump travel of a wheel, mm.
-const BUMP: f64 = 60.0;
 /// Default radius of a wheel, mm.
 const RADIUS: f64 = 330.0;
 
@@ -433,8 +442,8 @@ pub fn bump(
     body: usize,
     centre: Vec3,
 ) -> usize {
-    let text = format!("{}*sin(2*pi*t)", BUMP * m.per_mm());
-    let why = format!("nothing drives it in the source: a vertical bump motion is added, law `{text}`");
+    let text = cases::oscillation(m, cases::HEAVE);
+    let why = "nothing drives it in the source: a vertical bump motion is added";
     notes.approximated("motion", &format!("wheel{suffix}"), at, why);
     let drives = Drives::Translation { body, at: centre, along: [0.0, 0.0, 1.0].into() };
     let note = "no law in the source: vertical bump motion of the wheel".into();

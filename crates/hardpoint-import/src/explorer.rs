@@ -3,7 +3,7 @@
 use hardpoint::model::{Vehicle, VehicleEnd};
 use hardpoint::space::Vec3;
 
-use crate::corner::{Corner, Link, Mount, plain, role_of};
+use crate::corner::{Corner, Link, Mount, ONLY_LISTED, plain, role_of};
 use crate::mechanism::{Mechanism, end_named};
 use crate::report::{ImportLog, SourceSpan};
 use crate::sides::{self, over};
@@ -333,8 +333,7 @@ fn collect(
                 }
             }
             _ => {
-                let why = "no member follows from its name: the hardpoint is only listed";
-                notes.approximated("hardpoint", &name, Some(*at), why);
+                notes.approximated("hardpoint", &name, Some(*at), ONLY_LISTED);
             }
         }
     }

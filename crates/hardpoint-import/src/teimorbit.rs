@@ -1,10 +1,10 @@
 //! Hardpoints in the TeimOrbit format of Adams/Car (`[HARDPOINT]` blocks of subsystems), left, right or single.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use hardpoint::space::Vec3;
 
-use crate::corner::{Corner, Link, plain, role_of, spin_axis};
+use crate::corner::{Corner, Link, ONLY_LISTED, plain, role_of, spin_axis};
 use crate::live_axle::{self, SideHardpoints};
 use crate::lotus::half_round;
 use crate::mechanism::{Mechanism, end_named};
@@ -34,6 +34,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     let (mut start, mut block, mut has_units) = (0, None, false);
     let mut parameters = Parameters::default();
     let mut blocks: Vec<Block> = Vec::new();
+    let mut rows = Vec::new();
     for whole in input.text.split_inclusive('\n') {
         let line = whole.split(['$', '!']).next().unwrap_or_default().trim();
         let from = start + whole.len() - whole.trim_start().len();
@@ -74,7 +75,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
                     columns = names.map(|n| n.to_ascii_lowercase()).collect();
                 }
                 None if section == "PARAMETER" => parameters.row(&mut m, &columns, line, at, notes),
-                None => row(&mut m, &mut sides, &columns, line, at, notes),
+                None => rows.extend(row(&mut m, &mut sides, &columns, line, at, notes)),
             },
             _ => {
                 let value = line.split_once('=').map(|(key, value)| {
@@ -107,6 +108,8 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     let end = blocks.iter().find_map(|b| end_named(b.value("MINOR_ROLE")?));
     let places = sides.each_ref().map(|side| side.places.clone());
     let [left, right, single] = sides.map(Side::corner);
+    let links = [&left, &right, &single].into_iter().flat_map(|corner| &corner.links);
+    let links: BTreeSet<String> = links.map(|link| link.name.clone()).collect();
     let mut rack = None;
     let mut known = false;
     let mut corners = [left, right];
@@ -121,6 +124,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     if live_axle::names_one(&places) {
         known = live_axle::build(&mut m, notes, &places, &corners, Some(block));
     }
+    let mut is_live_axle = known;
     if !known {
         for corner in corners.iter().filter(|c| !c.points.is_empty() || !c.links.is_empty()) {
             let mut corner = corner.clone();
@@ -138,9 +142,28 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     let has_arms = corners.iter().flat_map(|c| c.points.keys()).any(|role| role.is_of_an_arm());
     if !known && !has_arms {
         known = live_axle::build(&mut m, notes, &places, &corners, Some(block));
+        is_live_axle = known;
+    }
+    let is_on_link = |name: &str| rod_end(name).is_some_and(|(rod, _)| links.contains(rod));
+    let has_role = |name: &str| role_of(name).is_some();
+    let unplaced: BTreeSet<String> = match (known, is_live_axle) {
+        // The names are part of the error.
+        (false, _) => BTreeSet::new(),
+        (true, true) => live_axle::unplaced(&places, has_role).into_iter().collect(),
+        (true, false) => {
+            let names = places.iter().flat_map(|side| &side.named).map(|(name, _)| name);
+            names.filter(|name| !has_role(name) && !is_on_link(name)).cloned().collect()
+        }
+    };
+    for Row { name, plain, at } in rows {
+        if unplaced.contains(&plain) {
+            notes.approximated("hardpoint", &name, Some(at), ONLY_LISTED);
+        } else {
+            notes.taken("hardpoint", &name, Some(at));
+        }
     }
     if !known {
-        m.unplaced = Some(live_axle::unplaced(&places, |name| role_of(name).is_some()));
+        m.unplaced = Some(live_axle::unplaced(&places, has_role));
         if live_axle::has_leaf_springs(&places) {
             let why = "leaf springs guide the axle by bending, which the model does not support";
             notes.refused("hardpoint", "leaf spring", Some(block), why);
@@ -212,6 +235,21 @@ impl Side {
 
 /// Suffixes of the names of a rod's ends.
 const ENDS: [[&str; 3]; 2] = [["_inner", "_inboard", "_chassis"], ["_outer", "_outboard", "_upright"]];
+
+/// Returns the rod whose end has this name, and the number of the end.
+fn rod_end(name: &str) -> Option<(&str, usize)> {
+    let rods = ENDS.iter().enumerate();
+    rods.flat_map(|(end, words)| words.iter().map(move |word| (word, end)))
+        .find_map(|(word, end)| Some((name.strip_suffix(word)?, end)))
+}
+
+/// Row of a hardpoint.
+struct Row {
+    name: String,
+    /// Name in lower case without the side.
+    plain: String,
+    at: SourceSpan,
+}
 
 /// Parameters of the subsystem that are imported.
 #[derive(Debug)]
@@ -345,7 +383,7 @@ fn row(
     line: &str,
     at: SourceSpan,
     notes: &mut ImportLog,
-) {
+) -> Option<Row> {
     let words = words(line);
     let column = |names: [&str; 2]| {
         columns.iter().position(|c| names.contains(&c.as_str())).and_then(|k| words.get(k))
@@ -361,7 +399,7 @@ fn row(
             "the row is not a hardpoint with a name and three numbers",
             &help,
         );
-        return;
+        return None;
     };
     let symmetry = column(["symmetry", "symmetry"]).map_or("", String::as_str).to_ascii_lowercase();
     let place = half_round([x, y, z]);
@@ -381,24 +419,21 @@ fn row(
         sides[k].places.named.push((plain.clone(), place));
         if let Some(role) = role_of(&plain) {
             sides[k].corner.points.insert(role, place);
+        } else if let Some((rod, end)) = rod_end(&plain) {
+            sides[k].rods.entry(rod.to_owned()).or_default()[end] = Some(place);
         }
-        for (end, words) in ENDS.iter().enumerate() {
-            if let (Some(rod), None) =
-                (words.iter().find_map(|word| plain.strip_suffix(word)), role_of(&plain))
-            {
-                sides[k].rods.entry(rod.to_owned()).or_default()[end] = Some(place);
-            }
-        }
+        plain
     };
-    match (symmetry.as_str(), prefix) {
+    let plain = match (symmetry.as_str(), prefix) {
         ("left/right" | "symmetric", _) => {
             // The row defines the left point, at negative y in Adams/Car.
-            put(0, "_left", place);
+            let plain = put(0, "_left", place);
             put(1, "_right", mirrored);
+            plain
         }
         ("left", _) | ("", "hpl_") => put(0, "_left", place),
         ("right", _) | ("", "hpr_") => put(1, "_right", place),
         _ => put(2, "", place),
-    }
-    notes.taken("hardpoint", name, Some(at));
+    };
+    Some(Row { name: name.clone(), plain, at })
 }

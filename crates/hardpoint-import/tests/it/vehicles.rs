@@ -78,7 +78,8 @@ fn masses_of_chrono_parts_come_in_the_frames_that_chrono_gives_them() {
             }
         };
         is("upper_control_arm", arm);
-        is("upright", [0.3, 0.4, 0.5, -0.01, -0.02, -0.03]);
+        // The entries xy, xz, yz of the matrix
+        is("upright", [0.3, 0.4, 0.5, -0.01, -0.03, -0.02]);
         is("spindle", [0.1, 0.2, 0.1, 0.0, 0.0, 0.0]);
         // A tie rod has no body: its 2 kg are divided between the rack and the upright.
         let along = Vec3::from([0.04, 0.4, 0.0]);
@@ -128,6 +129,7 @@ fn bushings_of_chrono_deflect_where_chrono_has_them() {
     let (imported, _) = read("front.json", &leaning("", &data, ""));
     let of = |fate| imported.report.of(fate).filter(|e| e.kind == "Bushing Data").count();
     assert_eq!(of(ElementOutcome::Taken), 1, "{}", imported.report);
+    assert_eq!(imported.report.of(ElementOutcome::NotUnderstood).count(), 0, "{}", imported.report);
     // The same with a bushing instead of the hinge, halfway between its pivots and along its axis.
     let mut doc: DocumentMut = imported.text.parse().unwrap();
     let point = |body: &str| format!("{{ body = \"{body}\", at = [0.0, 0.4, 0.2] }}");
@@ -600,4 +602,81 @@ fn every_key_of_a_part_is_accounted_for() {
     assert_eq!(of(ElementOutcome::NotUnderstood), ["Colour", "Turbo"]);
     assert_eq!(of(ElementOutcome::Refused), ["Axle", "Bushing Data"]);
     assert_eq!(of(ElementOutcome::Ignored), ["Radius"]);
+}
+
+#[test]
+fn travels_that_lock_the_mechanism_are_reduced_with_and_without_cases() {
+    let yaml = "type: trailing_arm\nside: left\nname: short\nversion: 0.1.0\nunits: millimeters\nhardpoints:\n\
+        \x20 trailing_arm_pivot_a: {x: 60, y: 500, z: 300}\n  trailing_arm_pivot_b: {x: 60, y: 700, z: 300}\n\
+        \x20 axle_inboard: {x: 5, y: 800, z: 300}\n  axle_outboard: {x: 5, y: 1000, z: 300}\n\
+        config:\n  steering:\n    type: none\n  wheel:\n    offset: 0\n    tire: {aspect_ratio: 0.55, section_width: 270, rim_diameter: 13}\n";
+    let rows = [
+        ("wheel_center", [0.0, -760.0, 310.0]),
+        ("lca_front", [-140.0, -660.0, 180.0]),
+        ("lca_rear", [150.0, -660.0, 180.0]),
+        ("lca_outer", [0.0, -700.0, 170.0]),
+        ("uca_front", [-110.0, -630.0, 470.0]),
+        ("uca_rear", [130.0, -630.0, 470.0]),
+        ("uca_outer", [15.0, -670.0, 480.0]),
+        ("tierod_inner", [130.0, -330.0, 235.0]),
+        ("tierod_outer", [140.0, -690.0, 230.0]),
+    ];
+    let axle = hardpoints(&rows.map(|(name, place)| (name, BOTH, place)));
+    for (name, text, drivers) in
+        [("short.yaml", yaml, &["bump"][..]), ("short.sub", &axle, &["bump_left", "bump_right"])]
+    {
+        let (imported, file) = read(name, text);
+        let solution = Analysis::new(&file.model).unwrap().solve(Run::new().without_sensitivities());
+        assert!(solution.stop.is_none(), "{:?}\n{}", solution.stop, imported.text);
+        let doc: DocumentMut = imported.text.parse().unwrap();
+        assert_eq!(doc["drivers"][drivers[0]]["law"].as_str(), Some("30*sin(2*pi*t)"));
+        let reduced = imported.report.of(ElementOutcome::Approximated).filter(|e| e.why.contains("locks"));
+        assert_eq!(reduced.map(|e| e.name.as_str()).collect::<Vec<_>>(), drivers, "{}", imported.report);
+    }
+}
+
+#[test]
+fn hardpoints_of_adams_car_without_a_role_are_reported() {
+    let panhard = [
+        WHEEL,
+        ("lower_link_frame", BOTH, [-500.0, -450.0, 300.0]),
+        ("lower_link_axle", BOTH, [-20.0, -500.0, 260.0]),
+        ("upper_link_frame", BOTH, [-450.0, -300.0, 450.0]),
+        ("upper_link_axle", BOTH, [-30.0, -320.0, 480.0]),
+        ("panhard_frame", "single", [100.0, -480.0, 400.0]),
+        ("panhard_axle", "single", [100.0, 470.0, 390.0]),
+        ("damper_frame", BOTH, [50.0, -450.0, 700.0]),
+        ("damper_axle", BOTH, [60.0, -500.0, 300.0]),
+        ("subframe_front", BOTH, [-100.0, -300.0, 300.0]),
+        ("sway_link_frame", BOTH, [-100.0, -300.0, 300.0]),
+    ];
+    let links = [
+        WHEEL,
+        ("tierod_inner", BOTH, [130.0, -330.0, 235.0]),
+        ("tierod_outer", BOTH, [140.0, -690.0, 230.0]),
+        ("front_lower_inner", BOTH, [-100.0, -350.0, 200.0]),
+        ("front_lower_outer", BOTH, [-20.0, -680.0, 190.0]),
+        ("rear_lower_inner", BOTH, [100.0, -350.0, 200.0]),
+        ("rear_lower_outer", BOTH, [20.0, -690.0, 195.0]),
+        ("front_upper_inner", BOTH, [-80.0, -400.0, 450.0]),
+        ("front_upper_outer", BOTH, [-10.0, -660.0, 460.0]),
+        ("rear_upper_inner", BOTH, [90.0, -410.0, 440.0]),
+        ("rear_upper_outer", BOTH, [30.0, -650.0, 455.0]),
+        ("subframe_front", BOTH, [-100.0, -300.0, 300.0]),
+    ];
+    for (rows, unused) in
+        [(&panhard[..], &["subframe_front", "sway_link_frame"][..]), (&links, &["subframe_front"])]
+    {
+        let (imported, _) = read("a.sub", &hardpoints(rows));
+        let listed: Vec<_> =
+            imported.report.of(ElementOutcome::Approximated).filter(|e| e.kind == "hardpoint").collect();
+        assert_eq!(listed.iter().map(|e| e.name.as_str()).collect::<Vec<_>>(), unused, "{}", imported.report);
+        assert!(
+            listed.iter().all(|e| e.why.contains("no member follows from its name") && e.place.is_some())
+        );
+        let taken = imported.report.of(ElementOutcome::Taken).filter(|e| e.kind == "hardpoint").count();
+        assert_eq!(taken, rows.len() - unused.len());
+    }
+    let (imported, _) = read("a.sub", &hardpoints(&panhard));
+    assert!(imported.text.contains("[joints.damper_left]"), "{}", imported.text);
 }
