@@ -58,6 +58,7 @@ fn read(source: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
         joints: BTreeMap::new(),
         splines: BTreeMap::new(),
         variables: BTreeMap::new(),
+        used: BTreeSet::new(),
     };
     reader.parts(&statements);
     reader.markers(&statements);
@@ -211,6 +212,8 @@ struct Reader<'n> {
     splines: BTreeMap<String, Vec<[f64; 2]>>,
     /// Functions of VARIABLE statements, by identifier.
     variables: BTreeMap<String, String>,
+    /// Names and identifiers of the statements that functions use.
+    used: BTreeSet<(&'static str, String)>,
 }
 
 impl Reader<'_> {
@@ -636,7 +639,7 @@ impl Reader<'_> {
     }
 
     /// Expands references to variables (`VARVAL(3)`) in a function. Recursive references remain.
-    fn expand_variables(&self, function: &str) -> String {
+    fn expand_variables(&mut self, function: &str) -> String {
         const DEEPEST: usize = 8;
         const LONGEST: usize = 100_000;
         let mut text = function.to_owned();
@@ -648,17 +651,20 @@ impl Reader<'_> {
             let id =
                 text[start + open + 1..start + close].trim_matches(|c: char| c.is_whitespace() || c == SEAM);
             let Some(own) = self.variables.get(id).filter(|f| f.len() + text.len() < LONGEST) else { break };
-            text.replace_range(start..=start + close, &format!("({own})"));
+            let own = format!("({own})");
+            self.used.insert(("VARIABLE", id.to_owned()));
+            text.replace_range(start..=start + close, &own);
         }
         text
     }
 
     /// Converts a function to the law of a coordinate, relative to the design configuration.
-    fn law(&self, function: &str, scale: f64, nominal: f64, turns: bool) -> Result<Law, String> {
+    fn law(&mut self, function: &str, scale: f64, nominal: f64, turns: bool) -> Result<Law, String> {
         let nominal = if nominal.abs() < 1e-12 { 0.0 } else { nominal };
+        let time = self.time;
         let translated = |text: &str| {
             let text = text.trim().trim_matches(['\'', '"']);
-            law::translate_with(text, Language::Adams, self.time)
+            law::translate_with(text, Language::Adams, time)
         };
         // The comma at the beginning of a continuation line either marks the continuation or is part of the function.
         let readings = [" ", ","].map(|seam| function.replace(SEAM, seam));
@@ -710,7 +716,7 @@ impl Reader<'_> {
     }
 
     /// Returns the points of a function that is linear in a spline of the time, such as `a*AKISPL(TIME, 0, id) + b`.
-    fn through_spline(&self, function: &str) -> Option<Vec<[f64; 2]>> {
+    fn through_spline(&mut self, function: &str) -> Option<Vec<[f64; 2]>> {
         let lower = function.to_ascii_lowercase();
         let start = ["akispl", "cubspl", "intspl"].iter().find_map(|name| lower.find(name))?;
         let open = start + lower[start..].find('(')?;
@@ -734,8 +740,12 @@ impl Reader<'_> {
             law::constant(&law::translate_with(&text, Language::Adams, "t").ok()?)
         });
         let (b, a) = (at_0?, at_1? - at_0?);
-        ((at_2? - b - 2.0 * a).abs() <= 1e-12 * (a.abs() + b.abs()))
-            .then(|| points.iter().map(|[t, x]| [*t, a * x + b]).collect())
+        if (at_2? - b - 2.0 * a).abs() > 1e-12 * (a.abs() + b.abs()) {
+            return None;
+        }
+        let points = points.iter().map(|[t, x]| [*t, a * x + b]).collect();
+        self.used.insert(("SPLINE", arguments[2].to_owned()));
+        Some(points)
     }
 
     fn coupler(&mut self, s: &Statement) {
@@ -978,7 +988,9 @@ impl Reader<'_> {
             } else if IRRELEVANT.contains(&s.name.as_str()) {
                 // Unknown keys and unsupported splines have been reported.
                 let is_refused = s.name == "SPLINE" && !self.splines.contains_key(&s.id);
-                if !is_unknown && !is_refused {
+                if self.used.iter().any(|(name, id)| *name == s.name && *id == s.id) {
+                    self.notes.taken(&s.name, &s.label, Some(s.at));
+                } else if !is_unknown && !is_refused {
                     self.notes.ignored(&s.name, Some(s.at));
                 }
             } else {

@@ -9,7 +9,7 @@ use hardpoint::space::Vec3;
 use hardpoint::topology::TopologyError;
 use hardpoint::{Analysis, Run};
 
-use crate::mechanism::{Coordinate, Drives, ForceOn, GROUND, Joint, Law, Mechanism};
+use crate::mechanism::{Coordinate, Driver, Drives, ForceOn, GROUND, Joint, Law, Mechanism};
 use hardpoint_file::Diagnostic;
 
 use crate::report::ImportLog;
@@ -41,17 +41,24 @@ pub fn finish(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) -> Option<D
     let moves = m.drivers.iter().any(|d| !matches!(d.law, Law::Fixed | Law::Constant(_)));
     let mut left = match freedom(m, notes) {
         Ok(left) => left,
-        Err(fault) => return Some(*fault),
+        Err(fault) => return Some(fault.diagnostic),
     };
     let only_one = left.count == 1 && !moves;
     if left.count > MOST_HELD {
-        let message = format!("{} motions are undriven", left.count);
+        let message = format!("{} motions are undriven; at most {MOST_HELD} are fixed", left.count);
         let help = "remove parts that need not move from the source, or add drivers to the model";
         return Some(notes.diagnostic("HP0808", None, message).help(help));
     }
     let mut tried = HashSet::new();
+    // Contradiction of other drivers that appeared once these motions were fixed.
+    let mut conflict: Option<(Vec<Driver>, Diagnostic)> = None;
     while left.count > 0 {
         let Some(held) = candidates(m, &left).find(|held| !tried.contains(held)) else {
+            if let Some((drivers, fault)) = conflict {
+                report_fixed(m, notes, &drivers);
+                m.drivers.extend(drivers);
+                return Some(fault);
+            }
             if let Some(fault) = left.singular {
                 return Some(*fault);
             }
@@ -77,12 +84,22 @@ pub fn finish(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) -> Option<D
                     || (now.count == left.count && now.joints.len() < left.joints.len()) =>
             {
                 left = now;
-                for driver in m.drivers[before..].iter().filter(|_| !only_one) {
-                    let why = format!("{}: a driver fixes it in the design configuration", undriven(m));
-                    notes.approximated("motion", driver.name.trim_end_matches("_held"), None, why);
+                conflict = None;
+                if !only_one {
+                    report_fixed(m, notes, &m.drivers[before..]);
                 }
             }
-            _ => m.drivers.truncate(before),
+            found => {
+                let fixed = m.drivers.split_off(before);
+                let is_own = |name: &String| fixed.iter().any(|driver| driver.name == *name);
+                if let Err(fault) = found
+                    && conflict.is_none()
+                    && !fault.drivers.is_empty()
+                    && !fault.drivers.iter().any(is_own)
+                {
+                    conflict = Some((fixed, fault.diagnostic));
+                }
+            }
         }
     }
     close_as_nominal(m, notes, closed);
@@ -91,6 +108,14 @@ pub fn finish(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) -> Option<D
     }
     remove_inadmissible(m, notes);
     None
+}
+
+/// Reports motions that drivers fix.
+fn report_fixed(m: &Mechanism, notes: &mut ImportLog, drivers: &[Driver]) {
+    for driver in drivers {
+        let why = format!("{}: a driver fixes it in the design configuration", undriven(m));
+        notes.approximated("motion", driver.name.trim_end_matches("_held"), None, why);
+    }
 }
 
 /// Adds a remark if nothing moves: in a mechanism with all motions fixed, something is usually missing.
@@ -312,21 +337,29 @@ struct FreeMotions {
     singular: Option<Box<Diagnostic>>,
 }
 
+/// Reason why a mechanism cannot be driven, other than undriven motions.
+struct FreedomError {
+    diagnostic: Diagnostic,
+    /// Names of the drivers that contradict each other, if that is the reason.
+    drivers: Vec<String>,
+}
+
 /// Returns the undriven motions of a mechanism.
-fn freedom(m: &Mechanism, notes: &ImportLog) -> Result<FreeMotions, Box<Diagnostic>> {
+fn freedom(m: &Mechanism, notes: &ImportLog) -> Result<FreeMotions, Box<FreedomError>> {
     let refused = |message: String| {
         notes.diagnostic("HP0808", None, format!("the imported mechanism does not work: {message}"))
     };
+    let failed = |message| Box::new(FreedomError { diagnostic: refused(message), drivers: Vec::new() });
     if m.bodies.len() == 1 {
-        return Err(Box::new(refused("it has no bodies".into())));
+        return Err(failed("it has no bodies".into()));
     }
-    let file = parsed(m).map_err(|why| Box::new(refused(why)))?;
+    let file = parsed(m).map_err(failed)?;
     match Analysis::new(&file.model) {
         Ok(_) => Ok(FreeMotions::default()),
         Err(fault) => {
             let message = refused(format!("{fault}"));
             let message = fault.notes().into_iter().fold(message, |m, n| m.note(n));
-            let undriven = Box::new(Diagnostic { code: fault.code(), ..message }.help(fault.help()));
+            let diagnostic = Diagnostic { code: fault.code(), ..message }.help(fault.help());
             // Drivers of other quantities than joint coordinates are unnamed joints, after the named ones.
             let own =
                 |joints: &[JointId]| joints.iter().map(|j| j.0).filter(|j| *j < m.joints.len()).collect();
@@ -346,9 +379,13 @@ fn freedom(m: &Mechanism, notes: &ImportLog) -> Result<FreeMotions, Box<Diagnost
                     count: *freedom,
                     joints: own(joints),
                     bodies: named(bodies),
-                    singular: Some(undriven),
+                    singular: Some(Box::new(diagnostic)),
                 }),
-                _ => Err(undriven),
+                TopologyError::OverDriven { driver_names, .. } => {
+                    let drivers = driver_names.iter().map(|n| n.trim_matches('`').to_owned()).collect();
+                    Err(Box::new(FreedomError { diagnostic, drivers }))
+                }
+                _ => Err(Box::new(FreedomError { diagnostic, drivers: Vec::new() })),
             }
         }
     }

@@ -52,9 +52,8 @@ const DEEPEST: usize = 40;
 fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     let text = match document(input.bytes) {
         Ok(text) => text,
-        Err(why) => {
-            let help = "save the document in FreeCAD again";
-            notes.problem_with("HP0802", None, format!("the file is not a FreeCAD document: {why}"), help);
+        Err((why, help)) => {
+            notes.problem_with("HP0802", None, why, help);
             return None;
         }
     };
@@ -90,12 +89,23 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
 }
 
 /// Returns the text of the document in the archive.
-fn document(bytes: &[u8]) -> Result<String, String> {
-    let mut archive = zip::ZipArchive::new(Cursor::new(bytes)).map_err(|e| e.to_string())?;
-    let file = archive.by_name("Document.xml").map_err(|_| "it has no `Document.xml`".to_owned())?;
-    let mut text = String::new();
-    file.take(LARGEST as u64).read_to_string(&mut text).map_err(|e| format!("`Document.xml`: {e}"))?;
-    Ok(text)
+///
+/// # Errors
+/// Returns the reason why there is none, and a correction.
+fn document(bytes: &[u8]) -> Result<String, (String, &'static str)> {
+    let failed = |why: String| {
+        (format!("the file is not a FreeCAD document: {why}"), "save the document in FreeCAD again")
+    };
+    let mut archive = zip::ZipArchive::new(Cursor::new(bytes)).map_err(|e| failed(e.to_string()))?;
+    let file = archive.by_name("Document.xml").map_err(|_| failed("it has no `Document.xml`".into()))?;
+    let mut text = Vec::new();
+    // The size that the archive states need not be right.
+    let size = file.take(LARGEST as u64 + 1).read_to_end(&mut text);
+    if size.map_err(|e| failed(format!("`Document.xml`: {e}")))? > LARGEST {
+        let message = format!("`Document.xml` is too large: at most {} MiB are read", LARGEST >> 20);
+        return Err((message, "save the assembly without parts that need not move"));
+    }
+    String::from_utf8(text).map_err(|e| failed(format!("`Document.xml`: {e}")))
 }
 
 /// Object of the document.

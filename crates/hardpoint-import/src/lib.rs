@@ -389,6 +389,14 @@ impl Input<'_> {
         std::iter::once(local.to_owned()).chain(tails).find_map(|p| (self.resolve)(&p))
     }
 
+    /// Returns the bytes of a file that the source names.
+    ///
+    /// # Errors
+    /// Returns the reason why there are none.
+    fn file_or_why(&self, path: &str) -> Result<Vec<u8>, String> {
+        self.file(path).ok_or_else(|| "the file does not exist next to the source".into())
+    }
+
     /// Adds a mesh that the source names, or reports why it is missing.
     #[expect(clippy::too_many_arguments, reason = "a mesh, its pose, and its position in the source")]
     fn mesh(
@@ -401,10 +409,8 @@ impl Input<'_> {
         at: Option<SourceSpan>,
         notes: &mut ImportLog,
     ) {
-        let added = match self.file(path) {
-            Some(bytes) => self.shapes.file(body, place, linear, path, &bytes),
-            None => Err("the file does not exist next to the source".into()),
-        };
+        let added =
+            self.file_or_why(path).and_then(|bytes| self.shapes.file(body, place, linear, path, &bytes));
         match added {
             Ok(()) => notes.taken("mesh", name, at),
             Err(why) => shapes::report_missing_shape(notes, "mesh", name, at, &format!("`{path}`: {why}")),

@@ -21,7 +21,7 @@ use crate::turn::home;
 use crate::xml::{children, exactly};
 use crate::{Format, Input, robot, xml};
 
-use masses::has_volume;
+use masses::{MassShape, has_volume};
 use meshes::{MeshAsset, MeshGeom};
 use vocabulary::{BODY, FRAME, GEOM, IRRELEVANT, JOINT, SITE};
 
@@ -82,7 +82,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     reader.join_welds();
     reader.join_connections();
     reader.free_bodies();
-    reader.add_masses();
+    reader.add_masses(input);
     for (list, bare) in [(&reader.bodies, false), (&reader.sites, true)] {
         for (name, (body, pose)) in list {
             reader.m.frame(name, *body, *pose, bare);
@@ -168,11 +168,19 @@ struct Compiler {
     euler: String,
     mesh_folder: String,
     auto_limits: bool,
+    /// Default of `inertia` of meshes: `exact` with `exactmeshinertia` of older versions.
+    mesh_inertia: &'static str,
 }
 
 impl Default for Compiler {
     fn default() -> Self {
-        Self { degrees: true, euler: "xyz".into(), mesh_folder: String::new(), auto_limits: true }
+        Self {
+            degrees: true,
+            euler: "xyz".into(),
+            mesh_folder: String::new(),
+            auto_limits: true,
+            mesh_inertia: "legacy",
+        }
     }
 }
 
@@ -240,8 +248,8 @@ struct Reader<'d, 'n> {
     tendons: BTreeMap<String, Vec<(Coordinate, f64)>>,
     /// Tendons between two sites.
     rods: BTreeMap<String, [String; 2]>,
-    /// Values of joint coordinates in the design configuration, and without force of springs (`springref`).
-    references: BTreeMap<String, [f64; 2]>,
+    /// Values of joint coordinates in the design configuration, and without force of springs (`springref`), by joint.
+    references: BTreeMap<usize, [f64; 2]>,
     connections: Vec<Closure>,
     welds: Vec<Closure>,
     free: Vec<FreeBody>,
@@ -632,7 +640,9 @@ impl<'d, 'n> Reader<'d, 'n> {
         // Coordinates are relative to the design configuration, where the value is `ref`.
         let free = if turns { self.angle(springref - zero) } else { springref - zero };
         let zero = if turns { self.angle(zero) } else { zero };
-        self.references.insert(source.name.to_owned(), [zero, zero + free]);
+        if let Some(coordinate) = coordinate {
+            self.references.insert(coordinate.joint, [zero, zero + free]);
+        }
         let source = ElementSource { kind: "spring", ..source };
         robot::joint_spring(&mut self.m, self.notes, source, coordinate, [stiffness, damping, free]);
         robot::friction(self.notes, source.name, source.at, friction);
@@ -670,8 +680,11 @@ impl<'d, 'n> Reader<'d, 'n> {
         }
         if inside.body != GROUND && has_volume(&kind) {
             let own = if ends.is_some() { home() } else { self.pose(element, class) };
-            let solid = if is_fitted { None } else { solid_of(&kind, &size, ends, own) };
-            self.add_geom_mass(element, inside, solid);
+            let shape = match solid_of(&kind, &size, ends, own).filter(|_| !is_fitted) {
+                Some((solid, place)) => MassShape::Solid(solid, place),
+                None => MassShape::Mesh(self.mesh_of_mass(mesh.as_deref(), is_fitted), own),
+            };
+            self.add_geom_mass(element, inside, shape);
         }
         if is_fitted {
             return;
@@ -705,6 +718,20 @@ impl<'d, 'n> Reader<'d, 'n> {
             ends,
             mesh,
         });
+    }
+}
+
+impl Reader<'_, '_> {
+    /// Returns the mesh whose mass a geom has.
+    ///
+    /// # Errors
+    /// Returns the reason why there is none.
+    fn mesh_of_mass(&self, name: Option<&str>, is_fitted: bool) -> Result<Rc<MeshAsset>, String> {
+        if is_fitted {
+            return Err("its shape is fitted to a mesh".into());
+        }
+        let name = name.ok_or("it has no mesh")?;
+        self.meshes.get(name).cloned().ok_or_else(|| format!("the mesh `{name}` does not exist"))
     }
 }
 

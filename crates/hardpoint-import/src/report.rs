@@ -1,6 +1,6 @@
 //! Report of an import: the outcome of every element of the source, and the errors.
 
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::fmt;
 
 use hardpoint_file::{Diagnostic, Severity, Source};
@@ -8,6 +8,8 @@ use serde::Serialize;
 
 /// Maximum number of entries of one outcome in the text report; further ones are counted.
 const LISTED: usize = 40;
+/// Maximum number of kinds whose further entries are counted by kind.
+const KINDS_COUNTED: usize = 10;
 /// Maximum number of errors that are rendered; further ones are counted.
 const SHOWN: usize = 50;
 /// Maximum number of errors that are recorded; further ones are counted only.
@@ -116,18 +118,32 @@ impl fmt::Display for Report {
 }
 
 impl Report {
-    /// Writes the entries of one outcome, one per line.
+    /// Writes the entries of one outcome, one per line. Of a long list at least one of each kind is written, as far as
+    /// there is room, and the others are counted.
     fn listed(&self, f: &mut fmt::Formatter<'_>, fate: ElementOutcome, title: &str) -> fmt::Result {
         let list: Vec<&Entry> = self.of(fate).collect();
         if list.is_empty() {
             return Ok(());
         }
         writeln!(f, "  {title}:")?;
-        for e in list.iter().take(LISTED) {
-            writeln!(f, "    {e}")?;
+        let mut kinds = BTreeSet::new();
+        let (first, others): (Vec<usize>, Vec<usize>) =
+            (0..list.len()).partition(|k| kinds.insert(list[*k].kind.as_str()));
+        let mut shown: Vec<usize> = first.iter().chain(&others).copied().take(LISTED).collect();
+        shown.sort_unstable();
+        for &k in &shown {
+            writeln!(f, "    {}", list[k])?;
         }
-        if list.len() > LISTED {
-            writeln!(f, "    ... and {} more like these", list.len() - LISTED)?;
+        let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+        for e in first.iter().chain(&others).skip(LISTED).map(|k| list[*k]) {
+            *counts.entry(&e.kind).or_default() += 1;
+        }
+        if !counts.is_empty() {
+            let list: Vec<String> =
+                counts.iter().take(KINDS_COUNTED).map(|(kind, n)| format!("{n} {kind}")).collect();
+            let end = if counts.len() > KINDS_COUNTED { ", ..." } else { "" };
+            let count: usize = counts.values().sum();
+            writeln!(f, "    ... and {count} more: {}{end}", list.join(", "))?;
         }
         Ok(())
     }

@@ -242,8 +242,11 @@ impl Reader<'_> {
         }
         // Its damping is the same along all axes.
         let damping = if c[0] == c[1] && c[1] == c[2] { c[0] } else { 0.0 };
-        if damping != c[0] || ct.iter().any(|x| *x != 0.0) {
-            lost.push("its damping is not imported, unless it is the same along all axes");
+        if damping != c[0] {
+            lost.push("its damping is not imported, since it is not the same along all axes");
+        }
+        if ct.iter().any(|x| *x != 0.0) {
+            lost.push("its damping about its axes is not imported");
         }
         let [stiffness, preload] = [(k, kt, per_length, per_angle), (force, torque, unit, per_angle)].map(
             |([x, y, z], [a, b, c], slide, turn)| {

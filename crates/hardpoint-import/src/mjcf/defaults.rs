@@ -51,6 +51,9 @@ impl<'d> Reader<'d, '_> {
             if let Some(auto) = node.attribute("autolimits") {
                 self.compiler.auto_limits = auto == "true";
             }
+            if node.attribute("exactmeshinertia") == Some("true") {
+                self.compiler.mesh_inertia = "exact";
+            }
             if node.attribute("coordinate") == Some("global") {
                 let at = xml::attribute_at(*text, *node, "coordinate");
                 self.notes.problem_with(

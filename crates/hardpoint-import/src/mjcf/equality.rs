@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use hardpoint::space::{Pose, Quat, Vec3};
+use hardpoint::space::{Mat3, Pose, Quat, Vec3};
 
 use super::{CLOSED, Closure, Element, Reader};
 use crate::markers::{ElementSource, Marker, join};
@@ -442,8 +442,7 @@ impl<'d> Reader<'d, '_> {
             self.notes.refused("fixed", name, at, why);
             return;
         };
-        let joint = self.joints.iter().find(|(_, c)| **c == coordinate).map(|(name, _)| name);
-        let [zero, reference] = joint.and_then(|j| self.references.get(j)).copied().unwrap_or_default();
+        let [zero, reference] = self.references.get(&coordinate.joint).copied().unwrap_or_default();
         let free = match lengths {
             None => Some(reference),
             Some([low, high]) if low == high && factor != 0.0 => Some(low / factor),
@@ -499,6 +498,31 @@ impl<'d> Reader<'d, '_> {
             .ok_or(Some("its sites are on the same body, so that its length is constant"))
     }
 
+    /// Returns the motion of a body from the design configuration to the reference of the springs (`qpos_spring`).
+    fn spring_reference(&self, body: usize) -> Pose {
+        let joint_of = |body: usize| self.m.joints.iter().position(|joint| joint.bodies[1] == body);
+        let (mut motion, mut body) = (home(), body);
+        // A tree has as many joints as bodies.
+        for _ in 0..self.m.joints.len() {
+            let Some(number) = joint_of(body).filter(|_| body != GROUND) else { break };
+            let joint = &self.m.joints[number];
+            if let (Some([zero, reference]), Some(axis)) = (self.references.get(&number), joint.axis)
+                && zero != reference
+            {
+                let moved = reference - zero;
+                let step = if joint.kind == "translational" {
+                    Pose { rot: none(), r: axis * moved }
+                } else {
+                    let (rot, at) = (Mat3::about(axis, moved), joint.at[0]);
+                    Pose { rot, r: at - rot * at }
+                };
+                motion = step.compose(motion);
+            }
+            body = joint.bodies[0];
+        }
+        motion
+    }
+
     /// Adds the spring and damper of a tendon through sites.
     fn tendon_spring(&mut self, element: Element<'d>, name: &str, path: &[Element<'d>]) {
         let (text, node) = element;
@@ -518,13 +542,13 @@ impl<'d> Reader<'d, '_> {
         let nominal = (to.r - from.r).norm();
         let mut spring = Spring { stiffness, damping, ..Spring::default() };
         let mut lost = None;
-        match lengths.map(|[low, high]| [low - rest, high - rest]) {
-            None if self.references.values().any(|[zero, reference]| zero != reference) => {
-                lost = Some(
-                    "it has no force in the design configuration, which differs from `springref` of joints"
-                        .to_owned(),
-                );
-            }
+        // The length at the reference of the springs, unless it is that of the design configuration
+        let reference = || {
+            let [from, to] = [(i, from), (j, to)].map(|(body, end)| self.spring_reference(body).point(end.r));
+            let length = (to - from).norm();
+            (length != nominal).then_some([length; 2])
+        };
+        match lengths.map(|[low, high]| [low - rest, high - rest]).or_else(reference) {
             None => {}
             Some([low, high]) if low == high && (low > 0.0 || stiffness == 0.0) => {
                 spring.free = (stiffness > 0.0).then_some(low);

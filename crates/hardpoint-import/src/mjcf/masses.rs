@@ -2,17 +2,19 @@
 //! compensation.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::rc::Rc;
 
 use hardpoint::space::{Mat3, Pose, Vec3};
 
 use super::defaults::NOTATIONS;
+use super::meshes::MeshAsset;
 use super::{Element, Reader, TreePosition};
 use crate::markers::ElementSource;
 use crate::mechanism::GROUND;
 use crate::report::SourceSpan;
 use crate::shapes::Solid;
 use crate::turn::{diagonal, home};
-use crate::{robot, xml};
+use crate::{Input, robot, xml};
 
 /// Default gravity of MuJoCo, m/s^2.
 const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
@@ -48,8 +50,7 @@ pub(super) struct Masses {
     gravity: Vec3,
     explicit: Vec<BodyMass>,
     geoms: Vec<GeomMass>,
-    /// Bodies and groups of geoms whose masses are not computed.
-    uncomputed: Vec<(usize, f64)>,
+    meshes: Vec<MeshMass>,
     compensated: Vec<Compensation>,
 }
 
@@ -64,7 +65,7 @@ impl Default for Masses {
             gravity: GRAVITY.into(),
             explicit: Vec::new(),
             geoms: Vec::new(),
-            uncomputed: Vec::new(),
+            meshes: Vec::new(),
             compensated: Vec::new(),
         }
     }
@@ -91,6 +92,46 @@ struct GeomMass {
     mass: f64,
     /// Inertia matrix about the centre, along the global axes, kg m^2.
     inertia: Mat3,
+}
+
+/// Mass of a geom with a mesh.
+struct MeshMass {
+    body: usize,
+    at: Option<SourceSpan>,
+    group: f64,
+    /// Global pose.
+    place: Pose,
+    /// Mass, kg, if the file defines it, or density, kg/m^3.
+    mass: Option<f64>,
+    density: f64,
+    /// Mesh, or the reason why its mass is not known.
+    mesh: Result<Rc<MeshAsset>, String>,
+}
+
+impl MeshMass {
+    /// Returns the mass of the geom.
+    ///
+    /// # Errors
+    /// Returns the reason why it is not known.
+    fn computed(&self, input: &Input<'_>) -> Result<GeomMass, String> {
+        let found = self.mesh.as_ref().map_err(String::clone)?.moments(input)?;
+        let mass = self.mass.unwrap_or(self.density * found.volume);
+        let rot = self.place.rot;
+        Ok(GeomMass {
+            body: self.body,
+            group: self.group,
+            centre: self.place.point(found.centre),
+            mass,
+            inertia: rot * found.per_mass * diagonal([mass; 3]) * rot.transpose(),
+        })
+    }
+}
+
+/// Shape of a geom with a mass, and its pose in the body or frame.
+pub(super) enum MassShape {
+    Solid(Solid, Pose),
+    /// A mesh, or the reason why its mass is not known.
+    Mesh(Result<Rc<MeshAsset>, String>, Pose),
 }
 
 /// Compensation of gravity on a body.
@@ -215,27 +256,26 @@ impl<'d> Reader<'d, '_> {
         });
     }
 
-    /// Records the mass of a geom: its volume or, of a shell, its area times its density. `None` for a shape whose mass
-    /// is not computed.
-    pub(super) fn add_geom_mass(
-        &mut self,
-        element: Element<'d>,
-        inside: &TreePosition,
-        solid: Option<(Solid, Pose)>,
-    ) {
+    /// Records the mass of a geom: its volume or, of a shell, its area times its density.
+    pub(super) fn add_geom_mass(&mut self, element: Element<'d>, inside: &TreePosition, shape: MassShape) {
         let class = inside.class.as_deref();
-        let [mass] = self.numbers::<1>(element, "mass", class).map_or([f64::NAN], |m| m);
+        let mass = self.numbers::<1>(element, "mass", class).map(|[mass]| mass);
         let [density] = self.numbers::<1>(element, "density", class).unwrap_or([DENSITY]);
         let [group] = self.numbers::<1>(element, "group", class).unwrap_or_default();
-        let Some((solid, place)) = solid else {
-            if mass != 0.0 && density != 0.0 {
-                self.masses.uncomputed.push((inside.body, group));
+        let (solid, place) = match shape {
+            MassShape::Solid(solid, place) => (solid, place),
+            MassShape::Mesh(mesh, place) => {
+                if mass.unwrap_or(density) != 0.0 {
+                    let (at, place) = (xml::at(element.0, element.1), inside.pose.compose(place));
+                    let geom = MeshMass { body: inside.body, at, group, place, mass, density, mesh };
+                    self.masses.meshes.push(geom);
+                }
+                return;
             }
-            return;
         };
         let is_shell = self.attribute(element, "shellinertia", class).is_some_and(|(flag, _)| flag == "true");
         let (size, per_mass) = if is_shell { shell_moments(solid) } else { solid.moments() };
-        let mass = if mass.is_nan() { density * size } else { mass };
+        let mass = mass.unwrap_or(density * size);
         if !(mass > 0.0 && mass.is_finite()) {
             return;
         }
@@ -264,10 +304,14 @@ impl<'d> Reader<'d, '_> {
             geom.centre = to.point(from.inverse().point(geom.centre));
             geom.inertia = turn * geom.inertia * turn.transpose();
         }
+        for geom in self.masses.meshes.iter_mut().filter(|geom| geom.body == body) {
+            geom.place = to.compose(from.inverse().compose(geom.place));
+        }
     }
 
-    /// Adds the masses of all bodies, gravity and its compensation.
-    pub(super) fn add_masses(&mut self) {
+    /// Adds the masses of all bodies, gravity and its compensation. A body has no mass if that of one of its geoms is
+    /// not known.
+    pub(super) fn add_masses(&mut self, input: &Input<'_>) {
         let mut masses = std::mem::take(&mut self.masses);
         let [first, last] = masses.groups;
         let is_counted = |body: usize, group: f64| body != GROUND && (first..=last).contains(&group);
@@ -283,30 +327,38 @@ impl<'d> Reader<'d, '_> {
                 of_body.entry(geom.body).or_default().push(geom);
             }
         }
-        let is_uncomputed = |(body, group): &(usize, f64)| is_counted(*body, *group) && is_from_geoms(*body);
-        let uncomputed: Vec<usize> =
-            masses.uncomputed.iter().filter(|geom| is_uncomputed(geom)).map(|(body, _)| *body).collect();
+        let mut unknown: BTreeMap<usize, (Option<SourceSpan>, String)> = BTreeMap::new();
+        for geom in &masses.meshes {
+            if is_counted(geom.body, geom.group) && is_from_geoms(geom.body) {
+                match geom.computed(input) {
+                    Ok(mass) => of_body.entry(geom.body).or_default().push(mass),
+                    Err(why) => {
+                        unknown.entry(geom.body).or_insert((geom.at, why));
+                    }
+                }
+            }
+        }
         let mut list = Vec::new();
         for mass in masses.explicit.drain(..) {
-            if of_body.contains_key(&mass.body) || uncomputed.contains(&mass.body) {
+            if of_body.contains_key(&mass.body) || unknown.contains_key(&mass.body) {
                 // With `inertiafromgeom` the geoms replace it.
                 self.notes.ignored("inertial", mass.at);
             } else {
                 list.push(mass);
             }
         }
-        for (body, geoms) in of_body {
+        for (body, geoms) in of_body.into_iter().filter(|(body, _)| !unknown.contains_key(body)) {
             let name = self.m.bodies[body].name.clone();
             list.push(mass_of_geoms(body, name, &geoms));
         }
-        if !uncomputed.is_empty() {
-            let why = format!("{} of them are meshes, whose masses are not computed", uncomputed.len());
-            self.notes.refused("mass of geoms", "", None, why);
+        for (body, (at, why)) in &unknown {
+            let why = format!("the body has no mass in the model, since that of a geom is not known: {why}");
+            self.notes.refused("mass of geoms", &self.m.bodies[*body].name, *at, why);
         }
         let [least_mass, least_inertia] = masses.least;
         if least_mass > 0.0 {
             let known: BTreeSet<usize> =
-                list.iter().map(|mass| mass.body).chain(uncomputed.clone()).collect();
+                list.iter().map(|mass| mass.body).chain(unknown.keys().copied()).collect();
             let massless = self.bodies.iter().filter(|(_, (body, _))| !known.contains(body));
             list.extend(massless.map(|(name, (body, pose))| BodyMass {
                 kind: "boundmass",
@@ -324,7 +376,7 @@ impl<'d> Reader<'d, '_> {
         }
         if let Some((total, at)) = masses.total {
             let sum: f64 = list.iter().filter(|mass| mass.body != GROUND).map(|mass| mass.mass).sum();
-            if uncomputed.is_empty() && sum > 0.0 {
+            if unknown.is_empty() && sum > 0.0 {
                 for mass in &mut list {
                     mass.mass *= total / sum;
                     mass.inertia = mass.inertia * diagonal([total / sum; 3]);

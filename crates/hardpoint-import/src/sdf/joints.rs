@@ -215,19 +215,26 @@ impl<'d> Reader<'d, '_> {
         }
         if type_name == "screw" {
             let number_of = |reader: &mut Self, key: &'static str| {
-                let n = child(joint, key).or_else(|| child(joint, "axis").and_then(|a| child(a, key)))?;
+                let n = pitch_of(joint, key)?;
                 exactly::<1>(n.text().unwrap_or_default(), key, xml::at(text, n), reader.notes).map(|[x]| x)
             };
             let own = number_of(self, "screw_thread_pitch");
             // The older key is in rad per length, with the opposite sign.
             let older =
                 number_of(self, "thread_pitch").filter(|p| *p != 0.0).map(|p| -std::f64::consts::TAU / p);
+            let is_given =
+                ["screw_thread_pitch", "thread_pitch"].into_iter().any(|key| pitch_of(joint, key).is_some());
             match own.or(older).filter(|p| *p != 0.0) {
                 Some(lead) => self.m.joints[number].lead = Some(lead),
+                None if !is_given => {
+                    let why = "it has no pitch: the default of SDFormat, 1 m per turn, is used";
+                    self.notes.approximated("screw_thread_pitch", &name, at, why);
+                    self.m.joints[number].lead = Some(1.0);
+                }
                 None => self.notes.problem_with(
                     "HP0804",
                     at,
-                    format!("the screw `{name}` has no pitch"),
+                    format!("the pitch of the screw `{name}` is zero"),
                     "give it a non-zero `screw_thread_pitch`",
                 ),
             }
@@ -290,6 +297,11 @@ impl<'d> Reader<'d, '_> {
             let ends = [full.clone(), format!("{scope}{other}")]
                 .map(|n| self.joints.get(&n).and_then(only_coordinate));
             let at = xml::at(text, mimic);
+            if name == other {
+                let message = format!("`{name}` follows itself");
+                self.notes.problem_with("HP0803", at, message, "use another joint of the model");
+                continue;
+            }
             let [Some(own), Some(master)] = ends else {
                 if self.names.contains(&format!("{scope}{other}")) {
                     let why = format!("`{name}` or `{other}`, which it follows, has no single coordinate");
@@ -436,6 +448,11 @@ impl<'d> Reader<'d, '_> {
             self.notes.refused("linear_bushing_rpy", "", xml::at(model.text, node), why);
         }
     }
+}
+
+/// Returns the pitch of a screw under one of its keys, which may be in its axis.
+fn pitch_of<'a, 'i>(joint: Node<'a, 'i>, key: &'static str) -> Option<Node<'a, 'i>> {
+    child(joint, key).or_else(|| child(joint, "axis").and_then(|axis| child(axis, key)))
 }
 
 fn only_coordinate(joint: &MarkerJoint) -> Option<Coordinate> {

@@ -289,7 +289,11 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
                     self.m.coupler(&format!("{}_mimic", j.name), note, terms);
                     self.notes.taken("mimic", &j.name, at);
                 }
-                _ if j.name != mimic.joint && self.names.contains(&mimic.joint) => {
+                _ if j.name == mimic.joint => {
+                    let message = format!("`{}` follows itself", j.name);
+                    self.notes.problem_with("HP0803", at, message, "use another joint of the robot");
+                }
+                _ if self.names.contains(&mimic.joint) => {
                     let why = format!(
                         "`{}` or `{}`, which it follows, has no single coordinate",
                         j.name, mimic.joint

@@ -80,12 +80,19 @@ fn elements_and_attributes_are_counted() {
         // Unknown elements are listed, in linear time.
         let kinds: String = (0..20_000).map(|k| format!("<p{k}:x/>")).collect();
         let imported = import(format, format!("{begin}{element}{kinds}{end}").as_bytes(), &|_| None).unwrap();
-        assert!(imported.report.to_string().contains("more like these"), "{}", imported.report);
+        assert!(imported.report.to_string().contains("... and 19"), "{}", imported.report);
         let many: String = (0..20_000).map(|k| element.replace("\"a\"", &format!("\"a{k}\""))).collect();
         refused(format, &format!("{begin}{many}{end}"), "5000");
         let same = format!("{begin}{}{end}", element.repeat(3000));
         refused(format, &same, "more like these");
     }
+}
+
+#[test]
+fn a_document_of_freecad_that_is_too_large_in_its_archive_is_named() {
+    let document = crate::document(&vec![b' '; (64 << 20) + 1]);
+    let message = import("freecad", &document, &|_| None).unwrap_err().to_string();
+    assert!(message.contains("`Document.xml` is too large: at most 64 MiB are read"), "{message}");
 }
 
 #[test]

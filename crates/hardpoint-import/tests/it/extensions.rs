@@ -553,6 +553,10 @@ fn tendons_of_constant_further_parts_or_with_slack_are_springs() {
     let spatial = |law: &str, path: &str| format!(r#"<spatial name="s" {law}>{path}</spatial>"#);
     let long = r#"<site site="middle"/><site site="end"/><site site="top"/><site site="far"/>"#;
     let fixed = |law: &str| format!(r#"<fixed name="s" {law}><joint joint="j" coef="0.5"/></fixed>"#);
+    let lowered = {
+        let (sin, cos) = f64::sin_cos(0.3);
+        -0.5 * 40.0 * (1.0 - f64::hypot(0.5 - 0.5 * cos, 1.0 + 0.5 * sin))
+    };
     // At t = 0 the end is 1 m below the top and at rest; the moment about y is minus the force upwards times 0.5 m.
     for (defaults, joint, tendon, moment, is_exact) in [
         // From a class: 40 N/m over 0.25 m
@@ -570,6 +574,15 @@ fn tendons_of_constant_further_parts_or_with_slack_are_springs() {
         ("", "", fixed(r#"stiffness="40" springlength="0.3""#), 10.0 * 0.6, true),
         ("", r#"ref="0.2" springref="0.5""#, fixed(r#"stiffness="40" springlength="0.3""#), 10.0 * 0.4, true),
         ("", r#"ref="0.2" springref="0.5""#, fixed(r#"stiffness="40""#), 10.0 * 0.3, true),
+        // The end is 0.5 sin 0.3 lower, and nearer to the axis, where springs have no force; it also is with -1.
+        ("", r#"ref="0.2" springref="0.5""#, spatial(r#"stiffness="40""#, path), lowered, true),
+        (
+            "",
+            r#"ref="0.2" springref="0.5""#,
+            spatial(r#"stiffness="40" springlength="-1""#, long),
+            lowered,
+            true,
+        ),
         // Lengths of fixed tendons may be negative; only -1 is that at the reference.
         ("", "", fixed(r#"stiffness="40" springlength="-0.2""#), -10.0 * 0.4, true),
         ("", "", fixed(r#"stiffness="40" springlength="-1.5 -1.5""#), -10.0 * 3.0, true),

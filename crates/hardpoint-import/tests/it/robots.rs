@@ -682,3 +682,97 @@ fn driven(text: &str, laws: [f64; 2]) -> String {
     }
     document.to_string()
 }
+
+/// A tetrahedron of edges 1 along the axes, whose triangles are seen from outside.
+const TETRAHEDRON: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
+/// The volume that the shape of a body encloses, m^3: positive if its triangles are seen from outside.
+fn volume(file: &ModelFile, body: &str) -> f64 {
+    let body = file.model.bodies.iter().position(|b| b.name == body).unwrap();
+    let shape = &file.drawing.bodies[&body];
+    let corners = |t: &[u32; 3]| t.map(|k| shape.vertices[k as usize]);
+    shape.triangles.iter().map(corners).map(|[a, b, c]| a.cross(b).dot(c) / 6.0).sum()
+}
+
+#[test]
+fn mirrored_meshes_are_seen_from_outside_in_every_format() {
+    let urdf = |uri: &str, scale: &str| {
+        let shape = format!(
+            r#"<link name="upper"><visual><geometry><mesh filename="{uri}" {scale}/></geometry></visual></link>"#
+        );
+        ARM.replace("<link name=\"upper\"/>", &shape)
+    };
+    let sdf = r#"<sdf version="1.9"><model name="m"><link name="upper"><visual name="v"><geometry><mesh><uri>t.obj</uri><scale>1 1 -1</scale></mesh></geometry></visual></link>
+        <joint name="j" type="revolute"><parent>world</parent><child>upper</child><axis><xyz>0 1 0</xyz></axis></joint></model></sdf>"#;
+    let mjcf = |mesh: &str| {
+        format!(
+            r#"<mujoco><asset><mesh name="t" {mesh}/></asset><worldbody><body name="upper"><joint axis="0 1 0"/><geom type="mesh" mesh="t"/></body></worldbody></mujoco>"#
+        )
+    };
+    let dae = r##"<COLLADA><library_geometries><geometry id="t"><mesh><source id="at"><float_array>0 0 0 1 0 0 0 1 0 0 0 1</float_array></source>
+        <vertices id="corners"><input semantic="POSITION" source="#at"/></vertices>
+        <triangles><input semantic="VERTEX" source="#corners" offset="0"/><p>0 2 1 0 1 3 0 3 2 1 2 3</p></triangles></mesh></geometry></library_geometries>
+        <library_visual_scenes><visual_scene><node><scale>-1 1 1</scale><instance_geometry url="#t"/></node></visual_scene></library_visual_scenes></COLLADA>"##;
+    for (name, text) in [
+        ("arm.urdf", urdf("t.obj", "")),
+        ("arm.urdf", urdf("t.obj", r#"scale="1 -1 1""#)),
+        ("arm.urdf", urdf("t.obj", r#"scale="-1 -1 -1""#)),
+        ("arm.urdf", urdf("t.dae", "")),
+        ("arm.urdf", urdf("t.dae", r#"scale="1 1 -1""#)),
+        ("m.sdf", sdf.to_owned()),
+        ("m.xml", mjcf(r#"file="t.obj" scale="-1 1 1""#)),
+        ("m.xml", mjcf(r#"vertex="0 0 0 1 0 0 0 1 0 0 0 1" scale="1 1 -1""#)),
+    ] {
+        let (_, file) = read_with(name, text.as_bytes(), &[("t.obj", TETRAHEDRON), ("t.dae", dae)]);
+        let found = volume(&file, "upper");
+        assert!((found - 1.0 / 6.0).abs() < 1e-7, "{found}: {text}");
+    }
+}
+
+#[test]
+fn a_screw_of_sdf_without_a_pitch_has_that_of_sdformat() {
+    let screw = |pitch: &str| {
+        format!(
+            r#"<sdf version="1.10"><model name="m"><link name="a"/><link name="b"/><joint name="j" type="screw"><parent>a</parent><child>b</child>{pitch}<axis><xyz>0 0 1</xyz></axis></joint></model></sdf>"#
+        )
+    };
+    let (imported, _) = read("m.sdf", &screw(""));
+    let listed = reported(&imported, ElementOutcome::Approximated, "screw_thread_pitch");
+    assert!(listed.len() == 1 && listed[0].contains("1 m per turn"), "{listed:?}");
+    let (same, _) = read("m.sdf", &screw("<screw_thread_pitch>1</screw_thread_pitch>"));
+    assert!(same.text.contains("lead = ") && imported.text == same.text, "{}", imported.text);
+    assert!(
+        refused("m.sdf", &screw("<thread_pitch>0</thread_pitch>"))
+            .contains("the pitch of the screw `j` is zero")
+    );
+}
+
+#[test]
+fn a_joint_cannot_follow_itself() {
+    let urdf = ARM.replace("</joint>\n</robot>", "</joint></robot>");
+    let urdf = urdf.replacen("</joint>", r#"<mimic joint="shoulder"/></joint>"#, 1);
+    let sdf = r#"<sdf version="1.11"><model name="m"><link name="a"/><joint name="shoulder" type="revolute"><parent>world</parent><child>a</child>
+        <axis><xyz>0 0 1</xyz><mimic joint="shoulder"><multiplier>2</multiplier></mimic></axis></joint></model></sdf>"#;
+    for (name, text) in [("arm.urdf", urdf.as_str()), ("m.sdf", sdf)] {
+        let message = refused(name, text);
+        assert!(
+            message.contains("`shoulder` follows itself") && message.contains("use another joint"),
+            "{message}"
+        );
+    }
+}
+
+#[test]
+fn more_undriven_motions_than_are_fixed_are_reported_with_their_limit() {
+    let joints: String = (0..401)
+        .map(|k| {
+            format!(
+                r#"<link name="l{k}"/><joint name="j{k}" type="continuous"><parent link="base"/><child link="l{k}"/><origin xyz="{k} 0 0"/><axis xyz="0 1 0"/></joint>"#
+            )
+        })
+        .collect();
+    let text = format!(r#"<robot name="r"><link name="base"/>{joints}</robot>"#);
+    let imported = hardpoint_import::import(text.as_bytes(), "r.urdf", &|_| None).unwrap();
+    let fault = imported.fault.unwrap().to_string();
+    assert!(fault.contains("401 motions are undriven; at most 400 are fixed"), "{fault}");
+}

@@ -191,6 +191,78 @@ fn settings_of_the_compiler_of_mujoco_change_masses() {
     assert_mass(mass_of(&imported, "a"), (2.0, [0.0; 3], [0.0; 6]), text);
 }
 
+#[test]
+fn masses_of_meshes_are_those_of_mujoco() {
+    let corners = "0 0 0 1 0 0 0 1 0 0 0 1";
+    let tetrahedron = format!(r#"vertex="{corners}""#);
+    let cube = r#"vertex="-1 -1 -1 1 -1 -1 -1 1 -1 1 1 -1 -1 -1 1 1 -1 1 -1 1 1 1 1 1""#;
+    // Of a tetrahedron with its corner at the origin: the centre (1, 1, 1)/4, and about it per unit of mass the
+    // moments 3/40 and the entries 1/80 of the matrix.
+    let own = |mass: f64| [[mass * 0.075; 3], [mass * 0.0125; 3]].concat().try_into().unwrap();
+    // Points 0.2 further, with 1 kg at x = 0.1
+    let both = {
+        let (x, y) = (5.0 / 6.0 * 0.45 + 0.1 / 6.0, 5.0 / 6.0 * 0.25);
+        let [dx, dy] = [0.35, 0.25];
+        let part = 5.0 / 6.0;
+        let ball = 0.4 * 0.05 * 0.05;
+        let across = part * (dx * dx + dy * dy) + 0.375 + ball;
+        let products = [0.0625 - part * dx * dy, 0.0625 - part * dy * dy, 0.0625 - part * dx * dy];
+        let [xy, yz, zx] = products;
+        (6.0, [x, y, y], [part * 2.0 * dy * dy + 0.375 + ball, across, across, xy, yz, zx])
+    };
+    let mesh = |mesh: &str, geom: &str| {
+        (format!("<mesh name=\"m\" {mesh}/>"), format!(r#"<geom type="mesh" mesh="m" {geom}/>"#))
+    };
+    let cases: [((String, String), Mass); 7] = [
+        (mesh(&tetrahedron, r#"density="60""#), (10.0, [0.25; 3], own(10.0))),
+        (mesh(&tetrahedron, r#"mass="2" density="0""#), (2.0, [0.25; 3], own(2.0))),
+        (mesh(r#"file="t.obj""#, r#"density="60""#), (10.0, [0.25; 3], own(10.0))),
+        (mesh(r#"file="t.obj" inertia="exact" scale="-1 1 1""#, r#"density="60""#), {
+            let [xx, yy, zz, xy, yz, zx] = own(10.0);
+            (10.0, [-0.25, 0.25, 0.25], [xx, yy, zz, -xy, yz, -zx])
+        }),
+        // Facets of more than three corners are covered once.
+        (mesh(cube, r#"density="0.5""#), (4.0, [0.0; 3], ball(4.0 * 2.0 / 3.0))),
+        (
+            mesh(&format!(r#"{cube} inertia="convex""#), r#"density="0.5""#),
+            (4.0, [0.0; 3], ball(4.0 * 2.0 / 3.0)),
+        ),
+        (mesh(&tetrahedron, r#"mass="5" pos="0.2 0 0"/><geom size="0.05" mass="1" pos="0.1 0 0""#), both),
+    ];
+    let model = |assets: &str, geoms: &str| {
+        format!(
+            r#"<mujoco><asset>{assets}</asset><worldbody><body name="a"><joint axis="0 1 0"/>{geoms}</body></worldbody></mujoco>"#
+        )
+    };
+    let obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+    let resolve = |path: &str| (path == "t.obj").then(|| obj.as_bytes().to_vec());
+    for ((assets, geoms), wanted) in cases {
+        let text = model(&assets, &geoms);
+        let imported = hardpoint_import::import(text.as_bytes(), "m.xml", &resolve).unwrap();
+        assert_mass(mass_of(&imported, "a"), wanted, &text);
+        assert_eq!(entries(&imported, ElementOutcome::Refused), [], "{}", imported.report);
+    }
+    // A body whose mass is known in part only has none, and is named.
+    let ball = r#"<geom size="0.05" mass="1"/>"#;
+    for (asset, why) in [
+        (r#"file="n.obj""#.to_owned(), "`n.obj`: the file does not exist"),
+        (format!(r#"{tetrahedron} inertia="shell""#), "`inertia=\"shell\"`"),
+        (format!(r#"vertex="{corners}" face="0 1 2 0 2 1" inertia="exact""#), "encloses no volume"),
+    ] {
+        let (assets, geoms) = mesh(&asset, "");
+        let imported = import("m.xml", &model(&assets, &(geoms + ball)));
+        assert!(!imported.text.contains("[masses"), "{}", imported.text);
+        let refused: Vec<_> =
+            imported.report.of(ElementOutcome::Refused).filter(|e| e.kind == "mass of geoms").collect();
+        assert!(
+            refused.len() == 1 && refused[0].name == "a" && refused[0].place.is_some(),
+            "{}",
+            imported.report
+        );
+        assert!(refused[0].why.contains(why), "{}", refused[0].why);
+    }
+}
+
 /// Arm that turns about y at (0, 0, 1), a free body of 2 kg at x = 5, and further bodies.
 fn welded(load: &str, others: &str, equalities: &str) -> String {
     format!(
@@ -391,7 +463,7 @@ fn properties_without_equivalent_are_refused() {
     let text = r#"<mujoco><asset><mesh name="m" file="m.stl"/></asset><worldbody><body name="a"><joint/><geom type="box" mesh="m"/></body></worldbody></mujoco>"#;
     let imported = import("m.xml", text);
     let refused = entries(&imported, ElementOutcome::Refused);
-    assert!(refused.contains(&("geom", "a")) && refused.contains(&("mass of geoms", "")), "{refused:?}");
+    assert!(refused.contains(&("geom", "a")) && refused.contains(&("mass of geoms", "a")), "{refused:?}");
 }
 
 /// Pendulum on a hinge about y.
@@ -697,6 +769,21 @@ fn markers_of_adams_that_are_apart_are_assembled_for_every_type() {
     }
 }
 
+#[test]
+fn a_motion_of_adams_that_joints_prevent_is_named_although_other_bodies_are_free() {
+    let text = "t\nUNITS/SYSTEM=MKS\nPART/1,GROUND\nPART/5,QG=0,6,0\nMARKER/15,PART=1,QP=0,6,0\nMARKER/51,PART=5\n\
+                JPRIM/4,PARALLEL_AXES,I=51,J=15\nPART/6,QG=0,7,0\nMARKER/16,PART=1,QP=0,7,0\nMARKER/61,PART=6\n\
+                JPRIM/5,ORIENTATION,I=61,J=16\nJPRIM/6,ATPOINT,I=61,J=16\nMOTION/8,I=61,J=16,X,DISPLACEMENT,FUNCTION=0.1*TIME\nEND\n";
+    let imported = hardpoint_import::import(text.as_bytes(), "m.adm", &|_| None).unwrap();
+    let fault = imported.fault.as_ref().expect("the motion contradicts the joints").list().next().unwrap();
+    assert!(fault.code == "HP0302" && fault.notes.iter().any(|n| n.contains("`MOTION_8`")), "{fault:?}");
+    // All motions of the free body have drivers.
+    for name in ["JPRIM_4", "PART_5_along_x", "PART_5_along_y", "PART_5_along_z"] {
+        assert!(imported.text.contains(&format!("[drivers.{name}_held]")), "{}", imported.text);
+        assert!(entries(&imported, ElementOutcome::Approximated).contains(&("motion", name)));
+    }
+}
+
 /// Pendulum of Adams with a spring, whose driver has a torque.
 const SPRUNG: &str = "pendulum\nUNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=MILLIMETER, TIME=SECOND\nPART/1, GROUND\n\
     MARKER/1, PART=1, REULER=0D,-90D,0D\nMARKER/10, PART=1, QP=0,0,400\nPART/2, MASS=2, CM=21\nMARKER/21, PART=2, QP=100,50,0\n\
@@ -923,5 +1010,47 @@ fn repeated_elements_of_urdf_and_sdformat_are_reported_and_not_read() {
         assert!((joint.frames[0].cols[2].z.abs() - 1.0).abs() < ASSEMBLED, "{}", imported.text);
         let dampers = imported.text.matches("damping =").count();
         assert_eq!(dampers, usize::from(name == "m.sdf"), "{}", imported.text);
+    }
+}
+
+#[test]
+fn a_long_report_lists_every_kind_of_entry() {
+    let joints: String = (0..50)
+        .map(|k| format!(r#"<body name="b{k}"><joint axis="0 1 0" armature="1"/><geom size="1"/></body>"#))
+        .collect();
+    let text = format!(
+        r#"<mujoco><asset><mesh name="m" file="m.stl"/></asset><worldbody>{joints}
+        <body name="last"><joint axis="0 1 0"/><geom type="mesh" mesh="m" group="3"/></body></worldbody></mujoco>"#
+    );
+    let report = import("m.xml", &text).report.to_string();
+    assert!(report.contains("mass of geoms `last`"), "{report}");
+    assert!(report.contains("... and 11 more: 11 armature\n"), "{report}");
+}
+
+#[test]
+fn variables_and_splines_that_motions_of_adams_use_are_imported() {
+    let text = "p\nUNITS/SYSTEM=MKS\nPART/1,GROUND\nMARKER/1,PART=1\nPART/2\nMARKER/2,PART=2\nPART/3\nMARKER/3,PART=3\n\
+                JOINT/1,REVOLUTE,I=2,J=1\nJOINT/2,REVOLUTE,I=3,J=1\nVARIABLE/1,FUNCTION=TIME\nVARIABLE/2,FUNCTION=TIME\n\
+                SPLINE/1,X=0,1,2,3,Y=0,1,0,1\nSPLINE/2,X=0,1,2,3,Y=0,1,0,1\n\
+                MOTION/1,ROTATION,JOINT=1,FUNCTION=0.5*VARVAL(2)\nMOTION/2,ROTATION,JOINT=2,FUNCTION=AKISPL(TIME,0,1)\nEND\n";
+    let imported = import("p.adm", text);
+    let of = |fate, kind: &str| imported.report.of(fate).filter(|e| e.kind == kind).count();
+    for kind in ["VARIABLE", "SPLINE"] {
+        let counts = [ElementOutcome::Taken, ElementOutcome::Ignored].map(|fate| of(fate, kind));
+        assert_eq!(counts, [1, 1], "{kind}: {}", imported.report);
+    }
+}
+
+#[test]
+fn damping_of_bushings_of_adams_that_is_not_imported_is_named() {
+    for (damping, expected) in [
+        ("C=1,1,1", ""),
+        ("C=1,1,1, CT=2,2,2", "its damping about its axes is not imported"),
+        ("C=1,1,2", "its damping is not imported, since it is not the same along all axes"),
+    ] {
+        let imported = import("p.adm", &SPRUNG.replace("K=1,2,3,", &format!("K=1,2,3, {damping},")));
+        let why: Vec<&str> =
+            imported.report.entries.iter().filter(|e| e.kind == "BUSHING").map(|e| e.why.as_str()).collect();
+        assert_eq!(why, [expected], "{}", imported.report);
     }
 }
