@@ -124,11 +124,13 @@ mod tests {
 
     #[test]
     fn a_body_without_mass_is_a_small_part_of_the_lightest_one_in_mass_and_inertia() {
-        let text = "units = { length = \"mm\" }\n[hardpoints]\nA = [0, 0, 0]\nB = [900, 0, 0]\n[bodies]\narm = {}\nlink = {}\n\
+        let text = "name = \"m\"\nunits = { length = \"mm\", angle = \"deg\" }\ntime = { end = 1, steps = 2 }\n\
+                    [hardpoints]\nA = [0, 0, 0]\nB = [900, 0, 0]\n[bodies]\narm = {}\nlink = {}\n\
                     [joints]\na = { type = \"revolute\", bodies = [\"ground\", \"arm\"], at = \"A\", axis = \"z\" }\n\
                     b = { type = \"revolute\", bodies = [\"arm\", \"link\"], at = \"B\", axis = \"z\" }\n\
                     [drivers]\na = { joint = \"a\", law = \"t\" }\nb = { joint = \"b\", law = 0 }\n\
-                    [masses]\nm = { type = \"rigid\", centre = { body = \"arm\", at = [9, 0, 0] }, mass = 2, ixx = 0.002, iyy = 0.003, izz = 0.004 }\n";
+                    [masses]\nm = { type = \"rigid\", centre = { body = \"arm\", at = [9, 0, 0] }, mass = 2, \
+                    ixx = 0.002, iyy = 0.003, izz = 0.004 }\n";
         let file = hardpoint_file::parse(text, "m.toml").unwrap();
         let [_, arm, link] = positive_masses(&file.model, 1e-3 * file.model.size())[..] else { panic!() };
         assert_eq!((arm.mass.mass, arm.change), (2.0, None));

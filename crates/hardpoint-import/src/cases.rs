@@ -25,10 +25,10 @@ fn shorten_bumps(m: &mut Mechanism, notes: &mut ImportLog, bumps: &[usize]) {
         (shorter, law)
     };
     let found = PARTS.into_iter().map(|part| (part, shorter(part))).find(|(_, (m, _))| finish::moves(m));
-    let Some((part, (shorter, law))) = found.filter(|(part, _)| *part < 1.0) else { return };
+    let Some((_, (shorter, law))) = found.filter(|(part, _)| *part < 1.0) else { return };
     *m = shorter;
     for driver in bumps {
-        let why = format!("the mechanism locks within {HEAVE} mm: {part} of it, law `{law}`");
+        let why = format!("the mechanism locks within {HEAVE} mm: the law is reduced to `{law}`");
         notes.approximated("motion", &m.drivers[*driver].name, None, why);
     }
 }
@@ -38,6 +38,9 @@ fn shorten_bumps(m: &mut Mechanism, notes: &mut ImportLog, bumps: &[usize]) {
 pub fn add_vehicle_cases(m: &mut Mechanism, notes: &mut ImportLog) {
     let mut bumps: Vec<usize> = m.wheels.iter().map(|w| w.bump).collect();
     bumps.dedup();
+    if bumps.is_empty() {
+        return;
+    }
     shorten_bumps(m, notes, &bumps);
     let mut wanted: Vec<(&'static str, Vec<(usize, f64)>)> = match bumps[..] {
         [left, right] => {

@@ -265,7 +265,7 @@ impl<'d> Reader<'d, '_> {
         let (solid, place) = match shape {
             MassShape::Solid(solid, place) => (solid, place),
             MassShape::Mesh(mesh, place) => {
-                if mass.unwrap_or(density) != 0.0 {
+                if mass.unwrap_or(density) > 0.0 {
                     let (at, place) = (xml::at(element.0, element.1), inside.pose.compose(place));
                     let geom = MeshMass { body: inside.body, at, group, place, mass, density, mesh };
                     self.masses.meshes.push(geom);

@@ -187,8 +187,8 @@ pub trait Real:
     /// Sine and cosine of an angle of any size, rad; for plain numbers, those of the standard library.
     fn sin_cos_of_any(self) -> (Self, Self);
 
-    /// Sine and cosine of an angle, rad, to about one unit in the last place for |x| up to 1e5 turns; for plain numbers,
-    /// of any size.
+    /// Sine and cosine of an angle, rad, to about one unit in the last place for |x| up to 1e5 turns; of plain numbers,
+    /// for any |x|.
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         sin_cos_within(self)
