@@ -502,7 +502,7 @@ impl<'d> Reader<'d, '_> {
     fn spring_reference(&self, body: usize) -> Pose {
         let joint_of = |body: usize| self.m.joints.iter().position(|joint| joint.bodies[1] == body);
         let (mut motion, mut body) = (home(), body);
-        // A tree has as many joints as bodies.
+        // A tree has one joint per body.
         for _ in 0..self.m.joints.len() {
             let Some(number) = joint_of(body).filter(|_| body != GROUND) else { break };
             let joint = &self.m.joints[number];
