@@ -448,10 +448,15 @@ pub fn margin(file: &ModelFile, margin: &MarginFact) -> Option<Diagnostic> {
     }))
 }
 
+/// Part of the range of a variable by which a value at its bound may be beyond it.
+const BOUND_KEPT: f64 = 1e-12;
+
 /// Warning for each design variable that a change moves out of its bounds.
 pub fn out_of_bounds(file: &ModelFile, change: &[f64]) -> Vec<Diagnostic> {
     let warn = |(k, (v, by)): (usize, (&DesignVariable, &f64))| {
-        let [low, high] = v.bounds.filter(|[low, high]| !(low <= by && by <= high))?;
+        // A value at a bound may be beyond it by round-off.
+        let slack = |[low, high]: &[f64; 2]| BOUND_KEPT * (high - low);
+        let [low, high] = v.bounds.filter(|b| !(b[0] - slack(b) <= *by && *by <= b[1] + slack(b)))?;
         let shown =
             |x: f64| with_unit(file.units.from_si(v.quantity, x), &variable_unit(&file.model, file.units, v));
         let message = format!("the change of `{}` by {} is outside its bounds", v.name, shown(*by));

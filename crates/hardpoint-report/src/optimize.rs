@@ -582,9 +582,10 @@ impl OptimizeFacts {
                 where a metric jumps"
                 .into(),
             Status::LimitsNotKept => format!(
-                "no design was found that keeps all limits{}; they contradict each other or the bounds: widen one of them, or \
+                "no design was found that keeps all limits{}; they contradict each other or the bounds{}: widen one of them, or \
                  try more `starts`",
-                exceeded()
+                exceeded(),
+                self.not_evaluated().map_or(String::new(), |text| format!(", unless designs that could not be evaluated keep them ({text})"))
             ),
             Status::IterationLimit => {
                 "the iteration limit was reached before an optimum: increase `max_iterations`".into()
@@ -598,6 +599,14 @@ impl OptimizeFacts {
                 format!("no design could be evaluated, not even the nominal one: {case}{why}")
             }
         }
+    }
+
+    /// Number of designs that could not be evaluated, with the reason of the first one.
+    fn not_evaluated(&self) -> Option<String> {
+        let first = self.refused.first()?;
+        let case = first.case.as_ref().map_or(String::new(), |case| format!("case `{case}`: "));
+        let count = self.refused_count;
+        Some(format!("{count} could not be evaluated, the first one: {case}{}", first.why))
     }
 
     /// Tables for printing: goals, limits, variables.
@@ -795,11 +804,8 @@ impl OptimizeFacts {
             };
             rows.push(("assembly", format!("{assembly}, {sense}")));
         }
-        let refused = match self.refused_count {
-            0 => String::new(),
-            n => format!(", {n} of which could not be evaluated"),
-        };
-        rows.push(("evaluated", format!("{designs} designs{refused}, {motions} motions")));
+        let refused = self.not_evaluated().map_or(String::new(), |text| format!("; {text}"));
+        rows.push(("evaluated", format!("{designs} designs, {motions} motions{refused}")));
         rows
     }
 

@@ -1191,8 +1191,8 @@ impl Model {
         self.depends_on_driver(measure) || kind.is_load() || matches!(kind, MeasureKind::Compliance { .. })
     }
 
-    /// The drivers along each of which a measure needs a derivative, if it does: of an axle that of each wheel, of a wheel
-    /// also that of the wheel that moves with it.
+    /// The drivers along each of which a measure needs a derivative, if it does: of an axle that of each wheel, of a
+    /// wheel also that of the wheel that moves with it.
     pub(crate) fn drivers_alone(&self, measure: usize) -> impl Iterator<Item = DriverId> {
         let of_wheel = |wheel: WheelId, need: WheelRequirement| self.wheels[wheel.0].driver(need);
         let list = |drivers: &'_ Option<Vec<DriverId>>| drivers.clone().unwrap_or_default();

@@ -61,7 +61,7 @@ impl Wheel {
 pub enum AxleMotion {
     /// The driver of the wheel alone; that of the other wheel is held.
     OneWheel,
-    /// The other contact point falls by as much as that of the wheel rises.
+    /// The other contact point falls at the rate at which that of the wheel rises.
     Roll,
     /// Both contact points rise alike.
     Heave,

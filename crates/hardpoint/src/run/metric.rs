@@ -118,17 +118,13 @@ fn metric_value(model: &Model, solution: &Solution, metric: &Metric) -> MetricVa
         let found = varied_curves(solution, metric, VariableId(v));
         found.and_then(|(y, x)| take(metric, &y, &x)).map_or(f64::NAN, |(value, _)| value.d)
     };
-    // If the motion was solved between output times, the metric is taken at a solved time. Integrals are not.
+    // If the motion was solved between output times, the metric is taken at a solved time. Integrals are not, nor is an
+    // extremum between times without rates.
     let is_located = is_among(&solution.located, metric);
     let hidden = match metric.take {
         Reduction::Mean | Reduction::Integral | Reduction::Rms(_) => true,
-        Reduction::Least
-        | Reduction::Greatest
-        | Reduction::Range
-        | Reduction::Change
-        | Reduction::RmsAtPoints(_)
-        | Reduction::Value(_)
-        | Reduction::Slope(_) => false,
+        Reduction::Least | Reduction::Greatest | Reduction::Range => y.orders == 1 && !is_located,
+        Reduction::Change | Reduction::RmsAtPoints(_) | Reduction::Value(_) | Reduction::Slope(_) => false,
     };
     let resolved = !hidden
         && (solution.between.is_some() || is_located)
@@ -230,55 +226,7 @@ pub(crate) fn unresolved_times(solution: &Solution, metric: &Metric, finer: bool
         !(error <= part * range)
     };
     let beside = located.iter().flat_map(|t| beside(metric, &y, *t)).collect::<Vec<_>>();
-    let is_located = is_among(&solution.located, metric);
-    let signs: &[f64] = match metric.take {
-        Reduction::Greatest if !is_located => &[1.0],
-        Reduction::Least if !is_located => &[-1.0],
-        Reduction::Range if !is_located => &[1.0, -1.0],
-        Reduction::Greatest
-        | Reduction::Least
-        | Reduction::Range
-        | Reduction::Change
-        | Reduction::Mean
-        | Reduction::Integral
-        | Reduction::Rms(_)
-        | Reduction::RmsAtPoints(_)
-        | Reduction::Value(_)
-        | Reduction::Slope(_) => &[],
-    };
-    let vertices = signs.iter().flat_map(|sign| vertices(metric, &y, &x, *sign, part * range));
-    located.into_iter().filter(unresolved).chain(beside).chain(vertices).collect()
-}
-
-/// Round-off of a value, relative to it.
-const ROUND_OFF: f64 = 1e-13;
-
-/// Times of a curve without rates at which its maximum (sign 1) or minimum (-1) may be: vertices of the parabolas
-/// through three neighbouring times, that are beyond all values by more than this.
-fn vertices(
-    metric: &Metric,
-    y: &SampledCurve<'_, f64>,
-    x: &Option<SampledCurve<'_, f64>>,
-    sign: f64,
-    beyond: f64,
-) -> Vec<f64> {
-    if y.orders > 1 {
-        return Vec::new();
-    }
-    let Some((most, _)) = extreme(metric, y, x, sign) else { return Vec::new() };
-    let vertex = |k: usize| {
-        let [[a, p], [b, q], [c, r]] = [k, k + 1, k + 2].map(|k| [y.times[k], sign * y.values[k][0]]);
-        // p + d (t - a) + e (t - a) (t - b)
-        let d = (q - p) / (b - a);
-        let e = ((r - q) / (c - b) - d) / (c - a);
-        let t = 0.5 * (a + b - d / e);
-        let gain = p + d * (t - a) + e * (t - a) * (t - b) - sign * most;
-        let is_peak = q >= p && q >= r && e < 0.0;
-        (is_peak && gain > beyond.max(ROUND_OFF * q.abs()) && !y.times.contains(&t)).then_some((k, t))
-    };
-    let found = (0..y.values.len().saturating_sub(2)).filter_map(vertex);
-    let interval = |k: usize, t: f64| k + usize::from(t > y.times[k + 1]);
-    found.filter(|(k, t)| within_window(metric, along(x, interval(*k, *t), *t))).map(|(_, t)| t).collect()
+    located.into_iter().filter(unresolved).chain(beside).collect()
 }
 
 /// Distance of the times beside one at which a slope over a measure without rates is taken, as a fraction of the run:
