@@ -625,9 +625,10 @@ fn an_axle_rolls_and_rises_with_both_wheels() {
     let names = ["left.anti_squat", "right.anti_squat", "left_load", "right_load"];
     let centre = ["left.instant_centre_side_x", "left.instant_centre_side_z"];
     let start = &values(&driven, &[&names[..], &centre].concat())[0];
-    close(-(start[2] + start[3]) / 2000.0 * 2.8 / 0.56, 500.0 / 1200.0 * 2.8 / 0.56);
+    close((start[2] + start[3]) / 2000.0, 500.0 / 1200.0);
     (0..2).for_each(|k| close(start[k], 500.0 / 1200.0 * 2.8 / 0.56));
-    (close(start[4], 1.2), close(start[5], 0.5));
+    close(start[4], 1.2);
+    close(start[5], 0.5);
     // On a De Dion axle driving acts at the wheel centre.
     let de_dion = driven.replace("end = \"rear\"", "end = \"rear\"\ndrive = \"inboard\"");
     for at in values(&de_dion, &["left.anti_squat", "in_heave", "left.bump_recession"]) {
