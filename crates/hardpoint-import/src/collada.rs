@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use hardpoint::space::{Mat3, Vec3};
 use roxmltree::Node;
 
+use crate::shapes::oriented;
 use crate::xml::{self, child, children, named};
 
 /// Maximum depth of nested nodes.
@@ -131,7 +132,6 @@ impl<'a, 'i: 'a> Reader<'a, 'i> {
             let list = |node: Node<'_, '_>| -> Vec<usize> {
                 node.text().unwrap_or_default().split_whitespace().map_while(|w| w.parse().ok()).collect()
             };
-            let is_mirrored = place.turn.is_mirror();
             let mut counts = child(faces, "vcount").map(list).unwrap_or_default().into_iter();
             for p in named(faces, "p") {
                 let corners: Vec<usize> = list(p).chunks_exact(stride).map(|c| c[own]).collect();
@@ -147,10 +147,8 @@ impl<'a, 'i: 'a> Reader<'a, 'i> {
                     let at: Option<Vec<Vec3>> =
                         face.iter().map(|k| points.get(*k).map(|s| place.point(*s))).collect();
                     let Some([first, others @ ..]) = at.as_deref() else { continue };
-                    self.out.extend(others.windows(2).map(|pair| {
-                        let [a, b] = if is_mirrored { [pair[1], pair[0]] } else { [pair[0], pair[1]] };
-                        [*first, a, b]
-                    }));
+                    let fan = others.windows(2).map(|pair| [*first, pair[0], pair[1]]);
+                    self.out.extend(fan.map(|triangle| oriented(place.turn, triangle)));
                 }
             }
         }

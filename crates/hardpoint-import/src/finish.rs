@@ -381,11 +381,13 @@ fn freedom(m: &Mechanism, notes: &ImportLog) -> Result<FreeMotions, Box<FreedomE
                     bodies: named(bodies),
                     singular: Some(Box::new(diagnostic)),
                 }),
-                TopologyError::OverDriven { driver_names, .. } => {
-                    let drivers = driver_names.iter().map(|n| n.trim_matches('`').to_owned()).collect();
+                TopologyError::OverDriven { drivers, .. } => {
+                    let drivers = drivers.iter().map(|d| file.model.drivers[d.0].name.clone()).collect();
                     Err(Box::new(FreedomError { diagnostic, drivers }))
                 }
-                _ => Err(Box::new(FreedomError { diagnostic, drivers: Vec::new() })),
+                TopologyError::Immovable { .. } | TopologyError::ElasticLoop { .. } => {
+                    Err(Box::new(FreedomError { diagnostic, drivers: Vec::new() }))
+                }
             }
         }
     }

@@ -148,11 +148,15 @@ pub fn in_file(name: &str, bytes: &[u8]) -> Result<Vec<Triangle>, String> {
     Ok(hardpoint_file::triangles(name, bytes)?.into_iter().map(|t| t.map(Vec3::from)).collect())
 }
 
-/// Returns a triangle after a linear map; one that mirrors reverses the order of the corners, so that a surface keeps
-/// its outer side.
-pub fn mapped(linear: Mat3, [a, b, c]: Triangle) -> Triangle {
-    let corners = if linear.is_mirror() { [a, c, b] } else { [a, b, c] };
-    corners.map(|p| linear * p)
+/// Returns the corners of a triangle in the order in which a linear map keeps the outer side of the surface: one that
+/// mirrors reverses it.
+pub fn oriented(linear: Mat3, [a, b, c]: Triangle) -> Triangle {
+    if linear.is_mirror() { [a, c, b] } else { [a, b, c] }
+}
+
+/// Returns a triangle after a linear map, with the same outer side.
+pub fn mapped(linear: Mat3, triangle: Triangle) -> Triangle {
+    oriented(linear, triangle).map(|p| linear * p)
 }
 
 /// Returns a name without characters that are invalid in file names.

@@ -581,12 +581,16 @@ impl OptimizeFacts {
             Status::Stuck => "no step makes progress, although it is not quite an optimum: try more `starts`, or more output times \
                 where a metric jumps"
                 .into(),
-            Status::LimitsNotKept => format!(
-                "no design was found that keeps all limits{}; they contradict each other or the bounds{}: widen one of them, or \
-                 try more `starts`",
-                exceeded(),
-                self.not_evaluated().map_or(String::new(), |text| format!(", unless designs that could not be evaluated keep them ({text})"))
-            ),
+            Status::LimitsNotKept => {
+                let others = self.not_evaluated().map_or(String::new(), |text| {
+                    format!(", unless designs that could not be evaluated keep them ({text})")
+                });
+                let limits = exceeded();
+                format!(
+                    "no design was found that keeps all limits{limits}; they contradict each other or the bounds{others}: \
+                     widen one of them, or try more `starts`"
+                )
+            }
             Status::IterationLimit => {
                 "the iteration limit was reached before an optimum: increase `max_iterations`".into()
             }

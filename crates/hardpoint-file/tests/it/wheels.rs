@@ -477,14 +477,20 @@ right = "r"
 measures = ["track", "total_toe", "ackermann_error", "axle_roll_centre_y", "axle_roll_centre_height"]
 "#;
 
-#[test]
-fn a_live_axle_has_the_measures_of_rear_wheels() {
-    let file = parsed(&(text("solid_axle") + REAR));
+/// The whole motion of a model, with sensitivities that are those of designs solved anew.
+fn verified(file: &ModelFile) -> Solution {
     let analysis = Analysis::new(&file.model).unwrap();
     let solution = analysis.run();
     assert!(solution.stop.is_none(), "{:?}", solution.stop);
     let report = verify(&analysis, &solution, &verify::Options::default(), |_| ControlFlow::Continue(()));
     assert!(report.passed(), "{:#?}", report.checks);
+    solution
+}
+
+#[test]
+fn a_live_axle_has_the_measures_of_rear_wheels() {
+    let file = parsed(&(text("solid_axle") + REAR));
+    let solution = verified(&file);
     let index = |name: &str| solution.measured.index(name).unwrap();
     let felt = |name: &str| {
         let d = |k, v| solution.measured.d(k, VariableId(v), index(name))[0].abs();
@@ -588,12 +594,7 @@ steps = 10
 fn an_axle_rolls_and_rises_with_both_wheels() {
     // Values of a model at all output times.
     let values = |text: &str, names: &[&str]| -> Vec<Vec<f64>> {
-        let file = parsed(text);
-        let analysis = Analysis::new(&file.model).unwrap();
-        let solution = analysis.run();
-        assert!(solution.stop.is_none(), "{:?}", solution.stop);
-        let report = verify(&analysis, &solution, &verify::Options::default(), |_| ControlFlow::Continue(()));
-        assert!(report.passed(), "{:#?}", report.checks);
+        let solution = verified(&parsed(text));
         let index = |name: &str| solution.measured.index(name).unwrap();
         let at = |k: usize| names.iter().map(|name| solution.measured.value(k, index(name))[0]).collect();
         (0..solution.motion.len()).map(at).collect()

@@ -21,7 +21,7 @@ use crate::topology::Topology;
 
 use super::dexterity::dexterity;
 use super::step_values::{RecordedValue, RecordedValues};
-use super::wheel::{TravellingWheel, axle_roll_centre, if_moving, moved_together};
+use super::wheel::{TravellingWheel, amounts, axle_roll_centre, if_moving};
 use super::{Instant, StepValues, bodies_asked_for};
 
 /// Maximum number of combinations of a driver, a body and a variable for which slopes are recorded: each takes some
@@ -384,13 +384,15 @@ impl<T: Real> DriverAlone<'_, T> {
             }
             MeasureKind::Wheel { wheel: w, what } => {
                 let own = wheel(first, 0, *w);
-                let travelling = match (second, model.moved_with(*w, *what)) {
-                    (Some(second), Some(other)) => {
+                let travelling = match second.zip(model.moved_with(*w, *what)) {
+                    Some((second, other)) => {
+                        let own = [own, wheel(second, 0, *w)];
                         let other = [wheel(first, 1, other), wheel(second, 1, other)];
-                        let [own, _] = moved_together([own, wheel(second, 0, *w)], other, what.motion());
-                        own
+                        let by = amounts(&own, &other, what.motion());
+                        let [one, two] = own;
+                        one.along(two, by)
                     }
-                    (_, None) | (None, _) => own,
+                    None => own,
                 };
                 travelling.measure(*what, &model.vehicle)
             }
@@ -402,7 +404,9 @@ impl<T: Real> DriverAlone<'_, T> {
                     [wheel(first, 0, left), wheel(second, 1, right)]
                 } else {
                     let along = |d: usize, id: WheelId| [wheel(first, d, id), wheel(second, d, id)];
-                    moved_together(along(0, left), along(1, right), AxleMotion::Roll)
+                    let (left, right) = (along(0, left), along(1, right));
+                    let by = amounts(&left, &right, AxleMotion::Roll);
+                    [left, right].map(|[one, two]| one.along(two, by))
                 };
                 let (y, height) = axle_roll_centre(wheels);
                 if *what == AxleMeasure::RollCentreY { y } else { height }

@@ -325,7 +325,7 @@ impl<T: Real> TravellingWheel<T> {
 
 impl<T: Real> TravellingWheel<T> {
     /// The same wheel while both drivers move by these amounts.
-    fn along(self, other: Self, [p, q]: [T; 2]) -> Self {
+    pub fn along(self, other: Self, [p, q]: [T; 2]) -> Self {
         let sum = |a: Dual<T>, b: Dual<T>| Dual { v: a.v, d: a.d * p + b.d * q };
         let vector =
             |a: Vec3<Dual<T>>, b: Vec3<Dual<T>>| Vec3::new(sum(a.x, b.x), sum(a.y, b.y), sum(a.z, b.z));
@@ -415,24 +415,22 @@ impl<T: Real> TravellingWheel<T> {
     }
 }
 
-/// Two wheels of an axle, each along the driver of the first and along that of the second, while their contact points
-/// rise alike or, as the axle rolls, one falls as the other rises.
-pub(super) fn moved_together<T: Real>(
-    first: [TravellingWheel<T>; 2],
-    second: [TravellingWheel<T>; 2],
+/// Amounts by which the drivers of two wheels of an axle move in a motion of the axle, from both wheels along the
+/// driver of the first and along that of the second.
+pub(super) fn amounts<T: Real>(
+    first: &[TravellingWheel<T>; 2],
+    second: &[TravellingWheel<T>; 2],
     motion: AxleMotion,
-) -> [TravellingWheel<T>; 2] {
+) -> [T; 2] {
     // C_z' of each wheel, by each driver
     let rates = |wheel: &[TravellingWheel<T>; 2]| [0, 1].map(|k| wheel[k].wheel.contact().z.d);
-    let ([a, b], [c, d]) = (rates(&first), rates(&second));
+    let ([a, b], [c, d]) = (rates(first), rates(second));
     // a p + b q = 1,  c p + d q = +-1,  times the determinant: no measure depends on how fast they move
-    let weights = match motion {
+    match motion {
         AxleMotion::OneWheel => [T::one(), T::zero()],
         AxleMotion::Heave => [d - b, a - c],
         AxleMotion::Roll => [d + b, -(a + c)],
-    };
-    let [first, second] = [first, second].map(|[one, other]| one.along(other, weights));
-    [first, second]
+    }
 }
 
 /// A body that is seen to turn by less than this part of its turn has its instant centre at infinity: some hundred
