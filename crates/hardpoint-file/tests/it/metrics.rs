@@ -506,3 +506,74 @@ fn where_a_curve_is_vertical_its_value_has_no_derivative() {
     assert!(found[0].value.is_some_and(|x| x.abs() < 1e-9) && found[0].d[0].is_nan(), "{:?}", found[0]);
     assert!(found[4].value.is_none(), "{:?}", found[4]);
 }
+
+/// A crank with a mass at C, driven through a turn.
+const WEIGHT: &str = r#"
+name = "crank with a mass"
+units = { length = "mm", angle = "deg" }
+loads = "static"
+parameters = { height = { value = 37, unit = "length" } }
+hardpoints = { O = [0, 0, 0], C = [100, 0, "height"] }
+bodies = { crank = {} }
+joints.pivot = { type = "revolute", bodies = ["ground", "crank"], at = "O", axis = "y" }
+drivers.motor = { joint = "pivot", law = "360*t + 20*sin(2*pi*t)" }
+gravity = { along = "-z" }
+masses.m = { type = "rigid", centre = { body = "crank", at = "C" }, mass = 10 }
+points.C = { body = "crank", at = "C" }
+measures.torque = { type = "driver_force", driver = "motor" }
+measures.lift = { type = "slope", of = "C.z", over = "angle", driver = "motor" }
+measures.angle = { type = "coordinate", joint = "pivot" }
+metrics.most = { of = "torque", take = "max" }
+metrics.least = { of = "torque", take = "min" }
+metrics.span = { of = "torque", take = "range" }
+metrics.steepest = { of = "lift", take = "max" }
+metrics.early = { of = "torque", take = "min", window = [0, 0.4] }
+time = { end = 1, steps = 10 }
+"#;
+
+/// The same mass on a spring between crank and arm, as an equilibrium.
+const HANGING: &str = r#"
+name = "arm with a mass on a spring"
+units = { length = "mm", angle = "deg" }
+parameters = { height = { value = 37, unit = "length" } }
+hardpoints = { O = [0, 0, 0], C = [100, 0, "height"] }
+bodies = { crank = {}, arm = {} }
+joints.pivot = { type = "revolute", bodies = ["ground", "crank"], at = "O", axis = "y" }
+joints.hinge = { type = "revolute", bodies = ["crank", "arm"], at = "O", axis = "y", axis2 = "z" }
+drivers.motor = { joint = "pivot", law = "90*t - 60" }
+gravity = { along = "-z" }
+masses.m = { type = "rigid", centre = { body = "arm", at = "C" }, mass = 10 }
+points.C = { body = "arm", at = "C" }
+forces.spring = { type = "torsion_spring", joint = "hinge", stiffness = 2 }
+equilibrium = {}
+measures.torque = { type = "driver_force", driver = "motor" }
+metrics.least = { of = "torque", take = "min" }
+metrics.reach = { of = "C.x", take = "max" }
+time = { end = 1, steps = 10 }
+"#;
+
+#[test]
+fn extrema_without_rates_are_those_of_the_curve_at_any_output_times() {
+    let (r, weight) = (0.1_f64.hypot(0.037), 10.0 * 9.80665);
+    // Of each, the amplitude is r times this, which grows with the height by height / r of it.
+    let turned =
+        [("most", weight), ("least", -weight), ("span", 2.0 * weight), ("steepest", 1.0), ("early", -weight)];
+    let of_arm = [("least", -weight), ("reach", 1.0)];
+    // The least torque is 2.3 degrees after the start.
+    let near_the_end = WEIGHT.replace("360*t + 20*sin(2*pi*t)", "360*t + 18");
+    for (text, expected) in [(WEIGHT, &turned[..]), (&near_the_end, &turned), (HANGING, &of_arm)] {
+        for steps in [7, 10, 11, 30, 100] {
+            let file = parsed(&text.replace("steps = 10", &format!("steps = {steps}")));
+            let solution = Analysis::new(&file.model).unwrap().run();
+            assert!(solution.stop.is_none(), "{:?}", solution.stop);
+            for (metric, found) in file.model.metrics.iter().zip(metrics(&file.model, &solution)) {
+                let (_, per_radius) = expected.iter().find(|(name, _)| *name == metric.name).unwrap();
+                let (value, d) = (per_radius * r, per_radius * 0.037 / r);
+                let name = format!("{} of {steps} steps: {found:?}", metric.name);
+                assert!((found.value.unwrap() - value).abs() <= 1e-9 * value.abs(), "{name} {value}");
+                assert!((found.d[0] - d).abs() <= 1e-6 * d.abs(), "{name} {d}");
+                assert!(found.error.is_none_or(|error| error <= 1e-9 * found.range), "{name}");
+            }
+        }
+    }
+}

@@ -16,6 +16,7 @@ use crate::motion::StopKind;
 use crate::motion::mechanism::driver_units;
 
 use super::analysis::Analysis;
+use super::curve::JUST_BEFORE;
 use super::metric::{is_among, unresolved_times, window_times};
 use super::needed::{MetricUse, NeededResults};
 use super::request::Progress;
@@ -37,9 +38,6 @@ const PLACES: [f64; 3] = [0.25, 0.5, 0.75];
 const MOST_HALVINGS: u32 = 40;
 /// Maximum number of passes; each adds times nearer to those of the metrics.
 const MOST_PASSES: usize = 4;
-/// Distance of the time just before a jump of a law, as a fraction of the run: far above the resolution of times, and
-/// too short for any motion.
-const JUST_BEFORE: f64 = 1e-12;
 /// Memory for the motion between output times.
 const BYTES: usize = 128 << 20;
 
@@ -63,6 +61,20 @@ fn is_between_outputs(metric: &Metric, times: &[f64]) -> bool {
 /// change its features between them, and its least value is a promise.
 fn is_exact(model: &Model, metric: &Metric) -> bool {
     model.type_of(metric.of) == "clearance"
+}
+
+/// Drops the times to be added that are those of others within round-off: several metrics may ask for the same time.
+fn keep_apart(add: &mut Vec<f64>, times: &[f64]) {
+    let [start, end] = [times[0], times[times.len() - 1]];
+    let is_same = |a: f64, b: f64| (a - b).abs() <= 0.1 * JUST_BEFORE * (end - start);
+    add.sort_by(f64::total_cmp);
+    add.dedup_by(|b, a| is_same(*a, *b));
+    add.retain(|t| {
+        let after = times.partition_point(|time| time < t);
+        !times[after.saturating_sub(1)..usize::min(after + 1, times.len())]
+            .iter()
+            .any(|time| is_same(*time, *t))
+    });
 }
 
 impl Analysis<'_> {
@@ -165,6 +177,7 @@ impl Analysis<'_> {
                     .filter(|m| !is_located(m))
                     .flat_map(|m| unresolved_times(now, m, found.is_some() || is_exact(model, m))),
             );
+            keep_apart(&mut add, &times);
             if add.is_empty() || passes == MOST_PASSES {
                 break;
             }

@@ -835,6 +835,7 @@ impl<'m> Curves<'m> {
             orders: 3,
             // Those where features change are located.
             kinks: &[],
+            is_located: false,
             values: samples.iter().map(|s| s.distance).collect(),
         };
         // Per time: the step of Newton's method to the nearest stationary time.

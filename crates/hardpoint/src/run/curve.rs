@@ -3,13 +3,30 @@
 
 use crate::number::{self, Real};
 
+/// Distance of the time just before a jump of a law, as a fraction of the run: far above the resolution of times, and
+/// too short for any motion.
+pub(super) const JUST_BEFORE: f64 = 1e-12;
+
 /// A curve over time: at each time the first `orders` of value, rate and acceleration.
 pub(super) struct SampledCurve<'t, T> {
     pub(super) times: &'t [f64],
     pub(super) orders: usize,
     /// Values at which it has kinks, since it is a magnitude that vanishes there.
     pub(super) kinks: &'static [f64],
+    /// True if its extrema are among its times.
+    pub(super) is_located: bool,
     pub(super) values: Vec<[T; 3]>,
+}
+
+/// Extremum of the parabola through three neighbouring times of a curve without rates.
+pub(super) struct Vertex<T> {
+    pub(super) value: T,
+    pub(super) time: f64,
+    /// The three times.
+    pub(super) around: [f64; 3],
+    /// Estimate of the error of the value at this time, and of the height that it lacks since the time is off; `None`
+    /// if there are too few times.
+    pub(super) errors: Option<[f64; 2]>,
 }
 
 /// The polynomial of a curve in one interval.
@@ -382,12 +399,69 @@ impl<T: Real> SampledCurve<'_, T> {
             times: &self.times[first..end],
             orders: self.orders,
             kinks: self.kinks,
+            is_located: self.is_located,
             values: self.values[first..end]
                 .iter()
                 .map(|numbers| number::each(numbers, |x| x.value()))
                 .collect(),
         };
         Some(apart(&near, k - first, t)?[0].abs())
+    }
+
+    /// Times k - 1, k and k + 1 of a curve without rates; `None` if it is not known or jumps there.
+    fn around(&self, k: usize) -> Option<[f64; 3]> {
+        let is_inside = self.orders == 1 && !self.is_located && k > 0 && k + 1 < self.values.len();
+        if !is_inside || !(k - 1..=k + 1).all(|k| self.values[k][0].value().is_finite()) {
+            return None;
+        }
+        let [a, b, c] = [self.times[k - 1], self.times[k], self.times[k + 1]];
+        let run = self.times[self.values.len() - 1] - self.times[0];
+        (f64::min(b - a, c - b) > 2.0 * JUST_BEFORE * run).then_some([a, b, c])
+    }
+
+    /// Maximum (sign 1) or minimum (-1) next to time k of a curve without rates, by the parabola through this time and
+    /// its neighbours.
+    pub(super) fn vertex(&self, k: usize, sign: f64) -> Option<Vertex<T>> {
+        let around = self.around(k)?;
+        let [a, b, c] = around;
+        let [p, q, r] = [k - 1, k, k + 1].map(|k| self.values[k][0]);
+        let of = T::constant;
+        // y = p + d (t - a) + e (t - a) (t - b)
+        let d = (q - p) / of(b - a);
+        let e = ((r - q) / of(c - b) - d) / of(c - a);
+        if !(sign * e.value() < 0.0) {
+            return None;
+        }
+        let t = of(0.5) * (of(a + b) - d / e);
+        let time = t.value();
+        // Nearer to a neighbour it is next to that one, unless there is no parabola.
+        let is_lower = |other: T| sign * other.value() <= sign * q.value();
+        let is_before = is_lower(p) || (a <= time && time <= b && self.around(k - 1).is_none());
+        let is_after = is_lower(r) || (b <= time && time <= c && self.around(k + 1).is_none());
+        if !(is_before && is_after) {
+            return None;
+        }
+        let at = |t: T| p + d * (t - of(a)) + e * (t - of(a)) * (t - of(b));
+        // A magnitude does not go beyond the value at which it has a kink.
+        let is_passed = |kink: f64| sign * kink >= sign * q.value() && sign * kink < sign * at(t).value();
+        let value = self.kinks.iter().copied().find(|kink| is_passed(*kink)).map_or_else(|| at(t), of);
+        let errors = self.errors_of_vertex(k, time, e.value(), |t| at(of(t)).value());
+        Some(Vertex { value, time, around, errors })
+    }
+
+    /// Errors of the vertex, at time t, of the parabola around time k with the square coefficient e, by the nearest
+    /// further time.
+    fn errors_of_vertex(&self, k: usize, t: f64, e: f64, parabola: impl Fn(f64) -> f64) -> Option<[f64; 2]> {
+        let [a, b, c] = self.around(k)?;
+        let before = k.checked_sub(2).filter(|_| self.around(k - 1).is_some());
+        let after = Some(k + 2).filter(|_| self.around(k + 1).is_some());
+        let far = |k: &usize| (self.times[*k] - b).abs();
+        let fourth = before.into_iter().chain(after).min_by(|i, k| far(i).total_cmp(&far(k)))?;
+        // y + f (t - a) (t - b) (t - c)  goes through it.
+        let x = self.times[fourth];
+        let f = (self.values[fourth][0].value() - parabola(x)) / ((x - a) * (x - b) * (x - c));
+        let rate = f * ((t - a) * (t - b) + (t - a) * (t - c) + (t - b) * (t - c));
+        Some([(f * (t - a) * (t - b) * (t - c)).abs(), (0.25 * rate * rate / e).abs()])
     }
 
     fn series(&self, k: usize, t: f64) -> RateSeries<T> {
@@ -648,6 +722,7 @@ mod tests {
             times,
             orders: 3,
             kinks: &[],
+            is_located: false,
             values: times.iter().map(|t| f(*t)).collect(),
         };
         [of(|t| [t.sin(), t.cos(), -t.sin()]), of(|t| [t.powi(5), 5.0 * t.powi(4), 20.0 * t.powi(3)])]
@@ -658,7 +733,13 @@ mod tests {
         let times = [0.0, 0.3, 1.1, 1.4];
         for curve in curves(&times) {
             for orders in [2, 3] {
-                let curve = SampledCurve { orders, times: &times, kinks: &[], values: curve.values.clone() };
+                let curve = SampledCurve {
+                    orders,
+                    times: &times,
+                    kinks: &[],
+                    is_located: false,
+                    values: curve.values.clone(),
+                };
                 for k in 0..3 {
                     for sign in [1.0, -1.0] {
                         let h = times[k + 1] - times[k];
@@ -684,7 +765,7 @@ mod tests {
         for unknown in [0, 1] {
             let mut values = times.map(|t: f64| [t.powi(4), 4.0 * t.powi(3), 12.0 * t * t]).to_vec();
             values[unknown][2] = f64::NAN;
-            let curve = SampledCurve { times: &times, orders: 3, kinks: &[], values };
+            let curve = SampledCurve { times: &times, orders: 3, kinks: &[], is_located: false, values };
             let [value, rate] = curve.at(0, 0.7_f64);
             assert!((value - 0.7_f64.powi(4)).abs() < 1e-14 && (rate - 4.0 * 0.7_f64.powi(3)).abs() < 1e-13);
         }

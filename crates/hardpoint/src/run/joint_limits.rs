@@ -297,7 +297,13 @@ fn curve_of<'s>(limit: &JointLimit, solution: &'s Solution) -> Option<SampledCur
     let (measured, m) = (&solution.measured, column(limit, solution)?);
     let values: Vec<[f64; 3]> = (0..measured.len()).map(|k| measured.value(k, m)).collect();
     let Output { known, kinks, .. } = measured.outputs[m];
-    let curve = SampledCurve { times: &solution.motion.times, orders: known.orders, kinks, values };
+    let curve = SampledCurve {
+        times: &solution.motion.times,
+        orders: known.orders,
+        kinks,
+        is_located: false,
+        values,
+    };
     (!curve.values.is_empty()).then_some(curve)
 }
 

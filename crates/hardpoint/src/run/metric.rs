@@ -4,7 +4,7 @@
 //! polynomials with the values, rates and accelerations at both ends.
 
 use super::curve::{
-    SampledCurve, THERE, WidePolynomial, abscissa_at, along, apart, crossings, unknown_change,
+    SampledCurve, THERE, Vertex, WidePolynomial, abscissa_at, along, apart, crossings, unknown_change,
 };
 use super::quadrature::{PathIntegral, coarse_middles, path_error, path_nodes, travel};
 use super::solution::Solution;
@@ -186,16 +186,34 @@ pub(crate) fn window_times(metric: &Metric) -> Vec<f64> {
     metric.window.into_iter().flatten().chain(at).collect()
 }
 
+/// Signs of the extrema that a metric is taken of: 1 for a maximum, -1 for a minimum.
+fn signs(take: &Reduction) -> &'static [f64] {
+    match take {
+        Reduction::Greatest => &[1.0],
+        Reduction::Least => &[-1.0],
+        Reduction::Range => &[1.0, -1.0],
+        Reduction::Change
+        | Reduction::Mean
+        | Reduction::Integral
+        | Reduction::Rms(_)
+        | Reduction::RmsAtPoints(_)
+        | Reduction::Value(_)
+        | Reduction::Slope(_) => &[],
+    }
+}
+
 /// Times that a metric needs in addition to those of a solution: times at which it is taken by inaccurate
 /// interpolation; for an integral, midpoints of the inaccurate intervals. `finer` is true if the solution has times
 /// between the output times.
 pub(crate) fn unresolved_times(solution: &Solution, metric: &Metric, finer: bool) -> Vec<f64> {
     let Some((y, x)) = curves_at(solution, metric) else { return Vec::new() };
     let range = range_of(&y);
-    let located = match &metric.take {
-        Reduction::Greatest => far_out_times(metric, &y, &x, 1.0, finer),
-        Reduction::Least => far_out_times(metric, &y, &x, -1.0, finer),
-        Reduction::Range => [1.0, -1.0].map(|sign| far_out_times(metric, &y, &x, sign, finer)).concat(),
+    let signs = signs(&metric.take);
+    let around_vertices = signs.iter().flat_map(|sign| unresolved_vertices(metric, &y, &x, *sign, range));
+    let located: Vec<_> = match &metric.take {
+        Reduction::Greatest | Reduction::Least | Reduction::Range => {
+            signs.iter().flat_map(|sign| far_out_times(metric, &y, &x, *sign, finer)).collect()
+        }
         // It is taken at output times.
         Reduction::Change => return Vec::new(),
         Reduction::Value(at) | Reduction::Slope(at) => {
@@ -226,7 +244,55 @@ pub(crate) fn unresolved_times(solution: &Solution, metric: &Metric, finer: bool
         !(error <= part * range)
     };
     let beside = located.iter().flat_map(|t| beside(metric, &y, *t)).collect::<Vec<_>>();
-    located.into_iter().filter(unresolved).chain(beside).collect()
+    located.into_iter().filter(unresolved).chain(beside).chain(around_vertices).collect()
+}
+
+/// Part of the range of a curve without rates within which all of its extrema are located: in an optimum several are
+/// often equal, and which of them is the largest changes from design to design.
+const NEAR: f64 = 0.1;
+/// Height that an extremum of a curve without rates may lack since its time is off, as a fraction of the range: the
+/// time of an extremum of a sine is then known to `6e-7` of a radian, and its derivative by the design likewise.
+const RESOLVED_HEIGHT: f64 = 1e-13;
+/// Round-off of a value, relative to it.
+const ROUND_OFF: f64 = 1e-13;
+/// Distance of the times on both sides of a vertex, as a fraction of the interval of its parabola.
+const BESIDE_VERTEX: f64 = 0.05;
+
+/// Times at and beside the extrema (sign 1: maxima) of a curve without rates whose parabolas are inaccurate. Only of
+/// those that may be the greatest one.
+fn unresolved_vertices(
+    metric: &Metric,
+    y: &SampledCurve<'_, f64>,
+    x: &Option<SampledCurve<'_, f64>>,
+    sign: f64,
+    range: f64,
+) -> Vec<f64> {
+    let Some((most, _)) = extreme(metric, y, x, sign) else { return Vec::new() };
+    let is_near = |vertex: &Vertex<f64>| sign * vertex.value >= sign * most - NEAR * range;
+    let is_unresolved = |vertex: &Vertex<f64>| {
+        let floor = ROUND_OFF * vertex.value.abs();
+        !vertex.errors.is_some_and(|[value, height]| {
+            value <= f64::max(RESOLVED * range, floor) && height <= f64::max(RESOLVED_HEIGHT * range, floor)
+        })
+    };
+    let around = |vertex: Vertex<f64>| {
+        let [first, middle, last] = vertex.around;
+        let by = BESIDE_VERTEX * (last - first);
+        let t = if (vertex.time - middle).abs() < 0.5 * by { middle } else { vertex.time };
+        [t - by, t, t + by]
+    };
+    vertices(metric, y, x, sign).filter(is_near).filter(is_unresolved).flat_map(around).collect()
+}
+
+/// Extrema (sign 1: maxima) of a curve without rates within the window of a metric.
+fn vertices<'c, T: Real>(
+    metric: &'c Metric,
+    y: &'c SampledCurve<'_, T>,
+    x: &'c Option<SampledCurve<'_, T>>,
+    sign: f64,
+) -> impl Iterator<Item = Vertex<T>> + 'c {
+    let found = (0..y.values.len()).filter_map(move |k| y.vertex(k, sign));
+    found.filter(|vertex| within_window(metric, along(x, y.interval(vertex.time), vertex.time)))
 }
 
 /// Distance of the times beside one at which a slope over a measure without rates is taken, as a fraction of the run:
@@ -246,8 +312,9 @@ fn beside(metric: &Metric, y: &SampledCurve<'_, f64>, t: f64) -> Vec<f64> {
     sides.into_iter().filter(|(_, range)| !is_near(*range)).map(|(time, _)| time).collect()
 }
 
-/// Time of the maximum (sign 1) or minimum (-1). If the motion is known at `finer` times, also the times of all extrema
-/// and ends of the window with about the same value: in a periodic motion any of them may be the largest.
+/// Time of the maximum (sign 1) or minimum (-1), unless it is the vertex of a parabola. If the motion is known at
+/// `finer` times, also the times of all extrema and ends of the window with about the same value: in a periodic motion
+/// any of them may be the largest.
 fn far_out_times(
     metric: &Metric,
     y: &SampledCurve<'_, f64>,
@@ -259,7 +326,8 @@ fn far_out_times(
         return Vec::new();
     }
     let Some((value, time)) = extreme(metric, y, x, sign) else { return Vec::new() };
-    let mut times = vec![time];
+    let is_vertex = vertices(metric, y, x, sign).any(|vertex| vertex.time == time);
+    let mut times: Vec<f64> = (!is_vertex).then_some(time).into_iter().collect();
     if finer {
         let far_out = sign * value - ALIKE * range_of(y);
         let near = (0..y.values.len() - 1).filter(|k| y.bound(*k, sign) >= far_out);
@@ -274,14 +342,19 @@ fn far_out_times(
 
 /// Times of a solution, by number, whose derivatives those of a metric depend on; `None` if all of them may.
 pub(super) fn derivative_times(solution: &Solution, metric: &Metric) -> Option<Vec<usize>> {
-    // Those of an extremum: both ends of its interval, or of the two where it is at a time.
+    // Those of an extremum: both ends of its interval, or of the two where it is at a time. Of a curve without rates
+    // those of any parabola there.
     let of_extremum = |sign: f64| {
         let (y, x) = curves_at(solution, metric)?;
         let Some((_, time)) = extreme(metric, &y, &x, sign) else { return Some(Vec::new()) };
         let times = &y.times[..y.values.len()];
         let [first, after] = [times.partition_point(|t| *t < time), times.partition_point(|t| *t <= time)];
-        Some(if y.orders == 1 && metric.window.is_none() {
+        let is_time = y.is_located || (y.orders == 1 && y.values.len() < 3);
+        let last = y.values.len() - 1;
+        Some(if is_time && metric.window.is_none() {
             (first..after).collect()
+        } else if y.orders == 1 {
+            (first.saturating_sub(2)..=usize::min(after + 1, last)).collect()
         } else {
             (first.saturating_sub(1)..=after).collect()
         })
@@ -292,9 +365,10 @@ pub(super) fn derivative_times(solution: &Solution, metric: &Metric) -> Option<V
             let crossing = curves_at(solution, metric).and_then(|(y, x)| crossings(&y, &x, at).next());
             Some(crossing.map_or(Vec::new(), |(k, _)| vec![k, k + 1]))
         }
-        Reduction::Greatest => of_extremum(1.0),
-        Reduction::Least => of_extremum(-1.0),
-        Reduction::Range => Some([of_extremum(1.0)?, of_extremum(-1.0)?].concat()),
+        Reduction::Greatest | Reduction::Least | Reduction::Range => {
+            let times: Option<Vec<_>> = signs(&metric.take).iter().map(|sign| of_extremum(*sign)).collect();
+            Some(times?.concat())
+        }
         Reduction::Value(_)
         | Reduction::Slope(_)
         | Reduction::Mean
@@ -329,8 +403,9 @@ fn curves_at<'s>(solution: &'s Solution, metric: &Metric) -> Option<Curves<'s, f
     let now = |output: OutputSource| {
         let (m, orders, kinks) = column(measured, output)?;
         let values = rows.iter().map(|k| measured.value(*k, m)).collect();
-        let orders = if is_among(&solution.located, metric) { 1 } else { orders };
-        Some(SampledCurve { times, orders, kinks, values })
+        let is_located = is_among(&solution.located, metric);
+        let orders = if is_located { 1 } else { orders };
+        Some(SampledCurve { times, orders, kinks, is_located, values })
     };
     Some((now(metric.of)?, abscissa(metric, now)?))
 }
@@ -372,8 +447,9 @@ fn varied_curves<'s>(
             [0, 1, 2].map(|order| Dual { v: x[order], d: d[order] })
         };
         let values = rows.iter().copied().map(number).collect();
-        let orders = if is_among(&solution.located, metric) { 1 } else { orders };
-        Some(SampledCurve { times, orders, kinks, values })
+        let is_located = is_among(&solution.located, metric);
+        let orders = if is_located { 1 } else { orders };
+        Some(SampledCurve { times, orders, kinks, is_located, values })
     };
     Some((varied(metric.of)?, abscissa(metric, varied)?))
 }
@@ -458,7 +534,9 @@ pub fn peaks(model: &Model, solution: &Solution, metric: &Metric, sign: f64) -> 
             let mut best = y.values[k][0];
             let turns = if y.orders == 1 { Vec::new() } else { y.turns(k) };
             let turns = turns.into_iter().map(|t| y.at(k, T::constant(t))[0]);
-            for other in turns.chain([y.values[k + 1][0]]) {
+            let vertices = [k, k + 1].into_iter().filter_map(|k| y.vertex(k, sign));
+            let vertices = vertices.filter(|v| y.times[k] <= v.time && v.time <= y.times[k + 1]);
+            for other in turns.chain(vertices.map(|v| v.value)).chain([y.values[k + 1][0]]) {
                 if sign * other.value() > sign * best.value() {
                     best = other;
                 }
@@ -548,8 +626,10 @@ fn interpolation_error(
                     .flatten()
                     .any(|end| (at - end).abs() <= THERE * end.abs().max(THERE))
             });
+            let vertex = vertices(metric, y, x, sign).find(|vertex| vertex.time == time);
             let here = match interval(time) {
                 None => 0.0,
+                Some(_) if vertex.is_some() => vertex?.errors?.iter().sum(),
                 Some(_) if cut => at_place(time)?,
                 Some(k) => apart(y, k, time)?[0].abs(),
             };
@@ -749,6 +829,9 @@ fn extreme<T: Real>(
                 offer(y.at(k, T::constant(turn))[0], turn);
             }
         }
+    }
+    for vertex in vertices(metric, y, x, sign) {
+        offer(vertex.value, vertex.time);
     }
     // At an end of the window the abscissa is fixed and the time varies.
     for end in metric.window.into_iter().flatten() {
