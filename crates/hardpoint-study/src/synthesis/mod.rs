@@ -1,33 +1,25 @@
 //! Synthesis from nothing: four-bars and slider-cranks that guide a body through poses, or a point along a path.
 //!
-//! - [`dyads`]: all cranks and sliders through three to five poses (Burmester).
-//! - [`linkage`]: a linkage in closed form, its range, type and transmission angle.
-//! - [`defects`]: passage through the poses in order, or the defect that prevents it.
-//! - `atlas` and `path`: coupler curves that resemble a path, and their exact least squares.
+//! The geometry of the linkages is in `hardpoint-planar`: [`dyads`], [`linkage`], [`defects`], coupler curves.
 //!
 //! [`synthesize`] returns [`Answer`]s, best first. An answer is geometry; its model is written and followed by the
 //! engine elsewhere (`hardpoint-report`), and [`deviation_of_engine`] compares that motion with the answer.
 
-mod atlas;
-pub mod defects;
-pub mod dyads;
 mod follow;
-pub mod linkage;
-mod path;
-pub mod plane;
-mod polynomial;
 
 use std::f64::consts::TAU;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use sobol_burley::sample;
 
-use atlas::{AtlasType, Target, Trace};
 use defects::{Defect, Passage, passage};
 use dyads::Dyad;
+use hardpoint_planar::atlas::{self, AtlasType, Target, Trace};
+use hardpoint_planar::path::{FittedLinkage, LARGEST, Search};
 use linkage::{Linkage, LinkageType};
-use path::{FittedLinkage, LARGEST, Search};
 use plane::{Complex, Displacement, Pose};
+
+pub use hardpoint_planar::{defects, dyads, linkage, plane};
 
 pub use follow::{EngineDeviation, deviation_of_engine};
 

@@ -9,8 +9,8 @@ use std::f64::consts::TAU;
 
 use sobol_burley::sample;
 
-use super::linkage::{Guide, Linkage};
-use super::plane::Complex;
+use crate::linkage::{Guide, Linkage};
+use crate::plane::Complex;
 
 /// Number of linkages of each type that are sampled; about two thirds assemble.
 const SAMPLED: u32 = 3000;

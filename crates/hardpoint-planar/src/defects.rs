@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use super::linkage::Linkage;
-use super::plane::{Complex, Displacement};
+use crate::linkage::Linkage;
+use crate::plane::{Complex, Displacement};
 
 /// Reason why a linkage that has all poses does not pass them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

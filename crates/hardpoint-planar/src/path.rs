@@ -10,8 +10,8 @@ use hardpoint::number::{Dual, Real};
 
 use hardpoint_search::singular;
 
-use super::linkage::{Guide, Linkage};
-use super::plane::{Complex, Displacement};
+use crate::linkage::{Guide, Linkage};
+use crate::plane::{Complex, Displacement};
 
 /// Distance that counts as none, in sizes of the path.
 const ROUND_OFF: f64 = 1e-13;

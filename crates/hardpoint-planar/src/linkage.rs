@@ -15,8 +15,8 @@ use std::f64::consts::{PI, TAU};
 
 use hardpoint::number::Real;
 
-use super::dyads::Dyad;
-use super::plane::{Complex, Displacement};
+use crate::dyads::Dyad;
+use crate::plane::{Complex, Displacement};
 
 /// The second dyad of a linkage.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -15,8 +15,8 @@ use hardpoint::linalg::least_squares;
 
 use hardpoint_search::singular;
 
-use super::plane::{Complex, Displacement};
-use super::polynomial::real_roots;
+use crate::plane::{Complex, Displacement};
+use crate::polynomial::real_roots;
 
 /// A dyad, in the first pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
