@@ -363,7 +363,7 @@ fn published_crates_are_complete() {
     let all = manifests();
     let is_published = |package: &serde_json::Value| package["publish"].is_null();
     let published: Vec<_> = all.iter().filter(|p| is_published(p)).collect();
-    assert_eq!(published.len(), 11);
+    assert_eq!(published.len(), 12);
     for package in published {
         let name = package["name"].as_str().unwrap();
         let folder = Path::new(package["manifest_path"].as_str().unwrap()).parent().unwrap();
@@ -508,7 +508,7 @@ fn one_writer_writes_all_csv_files() {
 fn the_glossary_names_what_is_in_the_sources() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let glossary = std::fs::read_to_string(root.join("../../docs/glossary.md")).unwrap();
-    let crates = ["src", "../hardpoint-study/src"].map(|folder| sources(&root.join(folder)));
+    let crates = ["src", "../hardpoint-planar/src", "../hardpoint-study/src"].map(|folder| sources(&root.join(folder)));
     let all: String = crates.into_iter().flatten().map(|(_, text)| text).collect();
     let mut named = 0;
     for line in glossary.lines().filter(|l| l.starts_with("| ")) {
