@@ -1,6 +1,8 @@
 //! Curves between solved times: polynomials with the values, rates and accelerations at both ends of each interval,
 //! with their extrema, crossings of a value, and error estimates.
 
+use std::ops::Range;
+
 use crate::number::{self, Real};
 
 /// Distance of the time just before a jump of a law, as a fraction of the run: far above the resolution of times, and
@@ -408,9 +410,15 @@ impl<T: Real> SampledCurve<'_, T> {
         Some(apart(&near, k - first, t)?[0].abs())
     }
 
-    /// Times k - 1, k and k + 1 of a curve without rates; `None` if it is not known or jumps there.
+    /// Maxima (sign 1) or minima (-1) of a curve without rates next to these times; none if they are among the times.
+    pub(super) fn vertices(&self, near: Range<usize>, sign: f64) -> impl Iterator<Item = Vertex<T>> {
+        let near = if self.orders == 1 && !self.is_located { near } else { 0..0 };
+        near.filter_map(move |k| self.vertex(k, sign))
+    }
+
+    /// Times k - 1, k and k + 1; `None` if the curve is not known or jumps there.
     fn around(&self, k: usize) -> Option<[f64; 3]> {
-        let is_inside = self.orders == 1 && !self.is_located && k > 0 && k + 1 < self.values.len();
+        let is_inside = k > 0 && k + 1 < self.values.len();
         if !is_inside || !(k - 1..=k + 1).all(|k| self.values[k][0].value().is_finite()) {
             return None;
         }
@@ -419,9 +427,9 @@ impl<T: Real> SampledCurve<'_, T> {
         (f64::min(b - a, c - b) > 2.0 * JUST_BEFORE * run).then_some([a, b, c])
     }
 
-    /// Maximum (sign 1) or minimum (-1) next to time k of a curve without rates, by the parabola through this time and
-    /// its neighbours.
-    pub(super) fn vertex(&self, k: usize, sign: f64) -> Option<Vertex<T>> {
+    /// Maximum (sign 1) or minimum (-1) next to time k, by the parabola through the values at this time and its
+    /// neighbours.
+    fn vertex(&self, k: usize, sign: f64) -> Option<Vertex<T>> {
         let around = self.around(k)?;
         let [a, b, c] = around;
         let [p, q, r] = [k - 1, k, k + 1].map(|k| self.values[k][0]);

@@ -251,12 +251,13 @@ pub(crate) fn unresolved_times(solution: &Solution, metric: &Metric, finer: bool
 /// often equal, and which of them is the largest changes from design to design.
 const NEAR: f64 = 0.1;
 /// Height that an extremum of a curve without rates may lack since its time is off, as a fraction of the range: the
-/// time of an extremum of a sine is then known to `6e-7` of a radian, and its derivative by the design likewise.
-const RESOLVED_HEIGHT: f64 = 1e-13;
+/// time of an extremum of a sine is then known to `2e-7` of a radian, and its derivative by the design likewise.
+const RESOLVED_HEIGHT: f64 = 1e-14;
 /// Round-off of a value, relative to it.
 const ROUND_OFF: f64 = 1e-13;
-/// Distance of the times on both sides of a vertex, as a fraction of the interval of its parabola.
-const BESIDE_VERTEX: f64 = 0.05;
+/// Distance of the times on both sides of a vertex, as a fraction of the interval of its parabola: beyond the error of
+/// the vertex where drivers travel 0.15 rad between two times.
+const BESIDE_VERTEX: f64 = 0.03;
 
 /// Times at and beside the extrema (sign 1: maxima) of a curve without rates whose parabolas are inaccurate. Only of
 /// those that may be the greatest one.
@@ -270,9 +271,9 @@ fn unresolved_vertices(
     let Some((most, _)) = extreme(metric, y, x, sign) else { return Vec::new() };
     let is_near = |vertex: &Vertex<f64>| sign * vertex.value >= sign * most - NEAR * range;
     let is_unresolved = |vertex: &Vertex<f64>| {
-        let floor = ROUND_OFF * vertex.value.abs();
+        let round_off = ROUND_OFF * vertex.value.abs();
         !vertex.errors.is_some_and(|[value, height]| {
-            value <= f64::max(RESOLVED * range, floor) && height <= f64::max(RESOLVED_HEIGHT * range, floor)
+            value <= f64::max(RESOLVED * range, round_off) && height <= RESOLVED_HEIGHT * range
         })
     };
     let around = |vertex: Vertex<f64>| {
@@ -291,7 +292,7 @@ fn vertices<'c, T: Real>(
     x: &'c Option<SampledCurve<'_, T>>,
     sign: f64,
 ) -> impl Iterator<Item = Vertex<T>> + 'c {
-    let found = (0..y.values.len()).filter_map(move |k| y.vertex(k, sign));
+    let found = y.vertices(0..y.values.len(), sign);
     found.filter(|vertex| within_window(metric, along(x, y.interval(vertex.time), vertex.time)))
 }
 
@@ -534,7 +535,7 @@ pub fn peaks(model: &Model, solution: &Solution, metric: &Metric, sign: f64) -> 
             let mut best = y.values[k][0];
             let turns = if y.orders == 1 { Vec::new() } else { y.turns(k) };
             let turns = turns.into_iter().map(|t| y.at(k, T::constant(t))[0]);
-            let vertices = [k, k + 1].into_iter().filter_map(|k| y.vertex(k, sign));
+            let vertices = y.vertices(k..k + 2, sign);
             let vertices = vertices.filter(|v| y.times[k] <= v.time && v.time <= y.times[k + 1]);
             for other in turns.chain(vertices.map(|v| v.value)).chain([y.values[k + 1][0]]) {
                 if sign * other.value() > sign * best.value() {

@@ -508,7 +508,8 @@ fn one_writer_writes_all_csv_files() {
 fn the_glossary_names_what_is_in_the_sources() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let glossary = std::fs::read_to_string(root.join("../../docs/glossary.md")).unwrap();
-    let crates = ["src", "../hardpoint-planar/src", "../hardpoint-study/src"].map(|folder| sources(&root.join(folder)));
+    let crates = ["src", "../hardpoint-planar/src", "../hardpoint-study/src"]
+        .map(|folder| sources(&root.join(folder)));
     let all: String = crates.into_iter().flatten().map(|(_, text)| text).collect();
     let mut named = 0;
     for line in glossary.lines().filter(|l| l.starts_with("| ")) {
