@@ -234,6 +234,15 @@ export class State {
     return (this.#sensitivities?.settings ?? '[]') === JSON.stringify(this.settings)
   }
 
+  /** True if the motion of the present design goes on where that of the original ends, at whose times curves are. */
+  get isCutOff(): boolean {
+    const [own, original] = [this.sensitivityReport.times, this.report.times]
+    return this.hasCurrentSensitivities && own.length > 0 && own[own.length - 1] > original[original.length - 1]
+  }
+
+  /** Makes the present design the model's text, so that its whole motion is shown; undefined without an engine. */
+  showWholeMotion?: () => void
+
   /** The solved changed design; undefined if it is predicted, or if there are no changes. */
   get present(): Design | undefined {
     if (this.#solved) return this.#solved

@@ -1,4 +1,5 @@
-import { el, prose } from '../dom'
+import { el, prose, setText } from '../dom'
+import { figure } from '../format'
 import { heatMap } from '../influence/heatmap'
 import { rankingTable } from '../influence/table'
 import type { Pose, View } from '../scene/view'
@@ -173,21 +174,30 @@ function recordHeading(state: State, name = ORIGINAL): HTMLElement {
   return heading
 }
 
-/** States that the motion is incomplete, and of which design. */
+/** States that the motion is incomplete, and of which design, or that only a part of it is shown. */
 function banner(state: State): HTMLElement {
-  const words = el('span')
-  const element = el(
-    'p',
-    { class: 'banner', role: 'status', 'data-testid': 'banner' },
-    el('strong', {}, 'This motion is incomplete. '),
-    words,
+  const [heading, words] = [el('strong'), el('span')]
+  const whole = el(
+    'button',
+    { type: 'button', 'data-testid': 'whole-motion', onclick: () => state.showWholeMotion?.() },
+    'Show the whole motion',
   )
+  const element = el('p', { class: 'banner', role: 'status', 'data-testid': 'banner' }, heading, words, whole)
   let shown = ''
   const sync = () => {
     const { status } = state.sensitivityReport
-    element.hidden = status.complete
-    const message = [state.outdated, status.message].filter(Boolean).join(': ')
-    if (message !== shown) words.replaceChildren(...prose(message))
+    const { isCutOff } = state
+    element.hidden = status.complete && !isCutOff
+    whole.hidden = !isCutOff || state.showWholeMotion === undefined
+    const { times, units } = state.report
+    const end = figure(times[times.length - 1], units.time)
+    const cutOff =
+      `Curves and values of this design are shown up to ${end}, where the motion of the original ends; ` +
+      'metrics and checks are of its whole motion. '
+    const message = [state.outdated, status.message, isCutOff ? cutOff : ''].filter(Boolean).join(': ')
+    if (message === shown) return
+    setText(heading, status.complete ? 'Only a part of this motion is shown. ' : 'This motion is incomplete. ')
+    words.replaceChildren(...prose(message))
     shown = message
   }
   state.onChoice(sync)

@@ -319,6 +319,13 @@ export class Studio {
     await solved
   }
 
+  /** Makes the present design the original one. */
+  async #adopt(label: string): Promise<void> {
+    const text = await this.#currentText()
+    this.history.go({ text, settings: [], label })
+    await this.#openModel({ ...this.model, text }, [])
+  }
+
   /** Changes the text of the original design; the changes made since stay. */
   async edit(change: (text: string) => string, label: string): Promise<void> {
     const { settings } = this.state
@@ -419,6 +426,7 @@ export class Studio {
       this.#recordStep()
       this.#scheduleUpdate()
     })
+    state.showWholeMotion = () => void this.#adopt('whole motion')
     state.onChoice(() => {
       this.#saveSoon()
       this.#showPoints()

@@ -577,3 +577,69 @@ fn extrema_without_rates_are_those_of_the_curve_at_any_output_times() {
         }
     }
 }
+
+#[test]
+fn the_least_size_of_a_vector_that_nearly_vanishes_is_that_of_the_curve() {
+    // Two forces at the tip of a crank that turns: 100 N sin(3 t - 1.234) along x, and e along y.
+    let text = r#"
+name = "crank with two forces"
+units = { length = "mm", angle = "deg" }
+planar = "xy"
+loads = "static"
+parameters = { e = 1 }
+hardpoints = { A = [0, 0], B = [100, 0] }
+bodies = { ground = ["A"], crank = ["A", "B"] }
+drivers.motor = { joint = "A", law = "100*t" }
+forces.swing = { type = "force", at = { body = "crank", at = "B" }, force = 100, along = "x", law = "sin(3*t - 1.234)" }
+forces.side = { type = "force", at = { body = "crank", at = "B" }, force = "e", along = "y" }
+measures.size = { type = "reaction", joint = "A", part = "radial" }
+metrics.least = { of = "size", take = "min" }
+time = { end = 1, steps = 10 }
+"#;
+    for least in [10.0, 0.1, 0.001] {
+        for steps in [7, 10, 40, 200] {
+            let text = text.replace("e = 1 }", &format!("e = {least:?} }}"));
+            let file = parsed(&text.replace("steps = 10", &format!("steps = {steps}")));
+            let solution = Analysis::new(&file.model).unwrap().run();
+            let found = &metrics(&file.model, &solution)[0];
+            let name = format!("{least} N, {steps} steps: {found:?}");
+            assert!((found.value.unwrap() - least).abs() <= 1e-6 * least, "{name}");
+            assert!((found.d[0] - 1.0).abs() <= 1e-6, "{name}");
+        }
+    }
+}
+
+#[test]
+fn derivatives_at_the_end_of_a_window_without_rates_are_those_of_solved_designs() {
+    let text = r#"
+name = "four-bar with a spring"
+units = { length = "mm", angle = "deg" }
+planar = "xy"
+loads = "static"
+hardpoints = { A = [3, -2], B = [25, 78], C = [190, 163], D = [230, 11], P = [120, 170] }
+bodies = { ground = ["A", "D"], crank = ["A", "B"], coupler = ["B", "C", "P"], rocker = ["C", "D"] }
+drivers.motor = { joint = "A", law = "50*t" }
+measures.rock = { type = "coordinate", joint = "D" }
+measures.torque = { type = "driver_force" }
+metrics.least = { of = "torque", over = "rock", take = "min", window = [5, 15] }
+design.C = { move = "C", along = "y" }
+time = { end = 1, steps = 30 }
+[forces.spring]
+type = "spring"
+from = { body = "ground", at = [60, -50] }
+to = { body = "coupler", at = "P" }
+stiffness = 2
+preload = 30
+"#;
+    let mut first = None;
+    for steps in [7, 40, 200] {
+        let file = parsed(&text.replace("steps = 30", &format!("steps = {steps}")));
+        let analysis = Analysis::new(&file.model).unwrap();
+        let d = metrics(&file.model, &analysis.run())[0].d[0];
+        let value = |by: f64| metrics(&file.model, &analysis.solve(Run::new().at(&[by])))[0].value.unwrap();
+        let difference = (value(1e-5) - value(-1e-5)) / 2e-5;
+        assert!((d - difference).abs() <= 1e-6 * d.abs(), "{steps} steps: {d} {difference}");
+        let first = *first.get_or_insert(d);
+        assert!((d - first).abs() <= 1e-6 * d.abs(), "{steps} steps: {d} {first}");
+    }
+}

@@ -7,7 +7,7 @@ use super::kinematics::State;
 use super::mechanism::Mechanism;
 
 /// Third time derivatives of one body's motion, global components.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BodyJerk {
     /// Jerk of its frame's origin, the rate of its acceleration, m/s^3.
     pub jerk: Vec3,

@@ -37,7 +37,7 @@ const PLACES: [f64; 3] = [0.25, 0.5, 0.75];
 /// Maximum number of bisections of an interval.
 const MOST_HALVINGS: u32 = 40;
 /// Maximum number of passes; each adds times nearer to those of the metrics.
-const MOST_PASSES: usize = 4;
+const MOST_PASSES: usize = 8;
 /// Memory for the motion between output times.
 const BYTES: usize = 128 << 20;
 

@@ -427,14 +427,29 @@ impl<T: Real> SampledCurve<'_, T> {
         (f64::min(b - a, c - b) > 2.0 * JUST_BEFORE * run).then_some([a, b, c])
     }
 
+    /// The kink nearest to time k, if it is not within the values of this time and its neighbours.
+    fn fold_around(&self, k: usize) -> Option<Fold> {
+        let y = |k: usize| self.values[k][0].value();
+        let far = |kink: &f64| (y(k) - kink).abs();
+        let kink = self.kinks.iter().copied().min_by(|a, b| far(a).total_cmp(&far(b)))?;
+        let side = if y(k) < kink { -1.0 } else { 1.0 };
+        (k - 1..=k + 1).all(|k| side * (y(k) - kink) > 0.0).then_some(Fold { kink, side })
+    }
+
     /// Maximum (sign 1) or minimum (-1) next to time k, by the parabola through the values at this time and its
-    /// neighbours.
+    /// neighbours, or through the squares of their distances from a kink.
     fn vertex(&self, k: usize, sign: f64) -> Option<Vertex<T>> {
         let around = self.around(k)?;
         let [a, b, c] = around;
-        let [p, q, r] = [k - 1, k, k + 1].map(|k| self.values[k][0]);
+        let fold = self.fold_around(k);
+        let sign = fold.map_or(sign, |fold| sign * fold.side);
         let of = T::constant;
-        // y = p + d (t - a) + e (t - a) (t - b)
+        let number = |k: usize| {
+            let y = self.values[k][0];
+            fold.map_or(y, |Fold { kink, .. }| (y - of(kink)) * (y - of(kink)))
+        };
+        let [p, q, r] = [number(k - 1), number(k), number(k + 1)];
+        // z = p + d (t - a) + e (t - a) (t - b)
         let d = (q - p) / of(b - a);
         let e = ((r - q) / of(c - b) - d) / of(c - a);
         if !(sign * e.value() < 0.0) {
@@ -450,26 +465,28 @@ impl<T: Real> SampledCurve<'_, T> {
             return None;
         }
         let at = |t: T| p + d * (t - of(a)) + e * (t - of(a)) * (t - of(b));
-        // A magnitude does not go beyond the value at which it has a kink.
-        let is_passed = |kink: f64| sign * kink >= sign * q.value() && sign * kink < sign * at(t).value();
-        let value = self.kinks.iter().copied().find(|kink| is_passed(*kink)).map_or_else(|| at(t), of);
-        let errors = self.errors_of_vertex(k, time, e.value(), |t| at(of(t)).value());
+        let errors = self.fourth(k).map(|fourth| {
+            // z + f (t - a) (t - b) (t - c)  goes through a fourth time.
+            let x = self.times[fourth];
+            let f = (number(fourth) - at(of(x))).value() / ((x - a) * (x - b) * (x - c));
+            let [a, b, c] = around.map(|other| time - other);
+            let rate = f * (a * b + a * c + b * c);
+            [(f * a * b * c).abs(), (0.25 * rate * rate / e.value()).abs()]
+        });
+        let Some(fold) = fold else { return Some(Vertex { value: at(t), time, around, errors }) };
+        let value = fold.root([at(t), T::zero()])[0];
+        // dy = dz / 2 (y - kink)
+        let distance = (value.value() - fold.kink).abs();
+        let errors = errors.map(|errors| errors.map(|error| 0.5 * error / distance));
         Some(Vertex { value, time, around, errors })
     }
 
-    /// Errors of the vertex, at time t, of the parabola around time k with the square coefficient e, by the nearest
-    /// further time.
-    fn errors_of_vertex(&self, k: usize, t: f64, e: f64, parabola: impl Fn(f64) -> f64) -> Option<[f64; 2]> {
-        let [a, b, c] = self.around(k)?;
+    /// The time nearest to time k beyond its neighbours, without a jump between them.
+    fn fourth(&self, k: usize) -> Option<usize> {
         let before = k.checked_sub(2).filter(|_| self.around(k - 1).is_some());
         let after = Some(k + 2).filter(|_| self.around(k + 1).is_some());
-        let far = |k: &usize| (self.times[*k] - b).abs();
-        let fourth = before.into_iter().chain(after).min_by(|i, k| far(i).total_cmp(&far(k)))?;
-        // y + f (t - a) (t - b) (t - c)  goes through it.
-        let x = self.times[fourth];
-        let f = (self.values[fourth][0].value() - parabola(x)) / ((x - a) * (x - b) * (x - c));
-        let rate = f * ((t - a) * (t - b) + (t - a) * (t - c) + (t - b) * (t - c));
-        Some([(f * (t - a) * (t - b) * (t - c)).abs(), (0.25 * rate * rate / e).abs()])
+        let far = |other: &usize| (self.times[*other] - self.times[k]).abs();
+        before.into_iter().chain(after).min_by(|i, k| far(i).total_cmp(&far(k)))
     }
 
     fn series(&self, k: usize, t: f64) -> RateSeries<T> {

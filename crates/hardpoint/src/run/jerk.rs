@@ -26,7 +26,8 @@ impl Jerks {
 impl Analysis<'_> {
     /// Jerk of all bodies over the motion of the design with variable k at `design[k]`.
     ///
-    /// At a jump of the third derivative of a driver's law, the one-sided value of the law itself is used.
+    /// At a jump of the third derivative of a driver's law, the one-sided value of the law itself is used. An equilibrium
+    /// is at rest at each time: its jerks are zero, as are its velocities.
     pub fn jerks(&self, design: &[f64]) -> Jerks {
         let design = self.design(design);
         self.jerks_in(&design, usize::MAX, &mut |_| ())
@@ -53,7 +54,12 @@ impl Analysis<'_> {
             }
             let Some(&t) = times.next() else { return };
             result.times.push(t);
-            result.states.extend(BodyJerk::all(&mut one.mechanism, t));
+            if model.equilibrium.is_some() {
+                let bodies = result.states.len() + model.bodies.len();
+                result.states.resize(bodies, BodyJerk::default());
+            } else {
+                result.states.extend(BodyJerk::all(&mut one.mechanism, t));
+            }
         });
         result
     }

@@ -243,7 +243,11 @@ pub(crate) fn unresolved_times(solution: &Solution, metric: &Metric, finer: bool
         let error = time_error(&y, &x, k, *time).unwrap_or(f64::INFINITY);
         !(error <= part * range)
     };
-    let beside = located.iter().flat_map(|t| beside(metric, &y, *t)).collect::<Vec<_>>();
+    // At an end of the window the abscissa is fixed, too.
+    let ends = metric.window.into_iter().flatten().flat_map(|end| crossings(&y, &x, end));
+    let ends: Vec<f64> = ends.map(|(k, t)| y.within(k, t)).collect();
+    let with_slope = located.iter().filter(|t| is_at_abscissa || ends.contains(t));
+    let beside = with_slope.flat_map(|t| beside(metric, &y, *t)).collect::<Vec<_>>();
     located.into_iter().filter(unresolved).chain(beside).chain(around_vertices).collect()
 }
 
@@ -258,6 +262,11 @@ const ROUND_OFF: f64 = 1e-13;
 /// Distance of the times on both sides of a vertex, as a fraction of the interval of its parabola: beyond the error of
 /// the vertex where drivers travel 0.15 rad between two times.
 const BESIDE_VERTEX: f64 = 0.03;
+
+/// Error of a vertex, as a fraction of the range, above which its interval is halved as well.
+const COARSE: f64 = 1e-5;
+/// Interval of a parabola, as a fraction of the run, that is not divided further: next to a kink none is accurate.
+const NARROW: f64 = 1e-6;
 
 /// Times at and beside the extrema (sign 1: maxima) of a curve without rates whose parabolas are inaccurate. Only of
 /// those that may be the greatest one.
@@ -276,13 +285,22 @@ fn unresolved_vertices(
             value <= f64::max(RESOLVED * range, round_off) && height <= RESOLVED_HEIGHT * range
         })
     };
+    let run = y.times[y.values.len() - 1] - y.times[0];
+    let is_wide = |vertex: &Vertex<f64>| vertex.around[2] - vertex.around[0] > NARROW * run;
     let around = |vertex: Vertex<f64>| {
         let [first, middle, last] = vertex.around;
         let by = BESIDE_VERTEX * (last - first);
         let t = if (vertex.time - middle).abs() < 0.5 * by { middle } else { vertex.time };
-        [t - by, t, t + by]
+        let is_coarse = !vertex.errors.is_some_and(|errors| errors.iter().sum::<f64>() <= COARSE * range);
+        let halves = is_coarse.then(|| [0.5 * (first + middle), 0.5 * (middle + last)]);
+        [t - by, t, t + by].into_iter().chain(halves.into_iter().flatten())
     };
-    vertices(metric, y, x, sign).filter(is_near).filter(is_unresolved).flat_map(around).collect()
+    vertices(metric, y, x, sign)
+        .filter(is_near)
+        .filter(is_unresolved)
+        .filter(is_wide)
+        .flat_map(around)
+        .collect()
 }
 
 /// Extrema (sign 1: maxima) of a curve without rates within the window of a metric.
@@ -303,8 +321,8 @@ const BESIDE: f64 = 1e-4;
 /// Times beside one at which a metric is taken over a measure, if there are no rates: at an equilibrium. The derivative
 /// at constant abscissa depends on the slope there.
 fn beside(metric: &Metric, y: &SampledCurve<'_, f64>, t: f64) -> Vec<f64> {
-    let takes_slope = matches!(metric.take, Reduction::Value(_) | Reduction::RmsAtPoints(_));
-    if y.orders > 1 || metric.over.is_none() || !takes_slope {
+    let is_slope = matches!(metric.take, Reduction::Slope(_));
+    if y.orders > 1 || metric.over.is_none() || is_slope {
         return Vec::new();
     }
     let by = BESIDE * (y.times[y.times.len() - 1] - y.times[0]);
