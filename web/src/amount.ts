@@ -16,9 +16,10 @@ export interface Amount {
 
 /**
  * Reads a number as the command's `--set` does: `2`, `2mm`, `0.5 deg`; also with a decimal comma, as a fraction such
- * as `1/2 in`, and with units in capitals. Returns a sentence where it is none.
+ * as `1/2 in`, and with units in capitals; a number without a unit is in the unit `usual`. Returns a sentence where it is
+ * none.
  */
-export function amount(text: string, unit: string): Amount | string {
+export function amount(text: string, unit: string, usual = unit): Amount | string {
   const written = text.trim().replaceAll('−', '-')
   if (written === '') return 'Enter a number, such as `12`, `1/2 in` or `+=2`.'
   const found = AMOUNT.exec(written)?.groups
@@ -28,7 +29,7 @@ export function amount(text: string, unit: string): Amount | string {
     decimal === undefined ? Number(whole ?? 0) + Number(top) / Number(bottom) : Number(decimal.replace(',', '.'))
   const value = size * (sign === '-' ? -1 : 1) * (step === '-=' ? -1 : 1)
   if (!Number.isFinite(value)) return `\`${text.trim()}\` is not finite.`
-  const factor = conversion(found.unit, unit)
+  const factor = conversion(found.unit || usual, unit)
   if (typeof factor === 'string') return factor
   const converted = Number((value * factor).toPrecision(15))
   if (!Number.isFinite(converted)) return `\`${text.trim()}\` is not finite.`

@@ -87,6 +87,34 @@ describe('rows of a spreadsheet', () => {
       problems: [],
     })
   })
+  test('have the unit of their titles, or of a line below them', () => {
+    const inches = { places: [['left', 152.4, 330.2, -76.2]], problems: [] }
+    for (const text of [
+      'name\tx [in]\ty [in]\tz [in]\nleft\t6\t13\t-3',
+      'name x [in] y [in] z [in]\nleft 6 13 -3',
+      'name\tx\ty\tz\n-\tin\tin\tin\nleft\t6\t33,02 cm\t-3',
+      ';x;y;z\n;[in];[in];[in]\nleft;6;13;-3',
+      '#z [IN]\tPoint\tY (in)\tx [in]\n-3\tleft\t13\t6',
+      'unit\tin\tin\tin\nleft\t6\t13\t-3',
+      'hardpoint, long. [in], lat. [in], vert. [in]\nleft, 6, 13, -3',
+      'x [in]\ty [in]\tz [in]\n6\t13\t-3',
+    ])
+      expect(read(text), text).toEqual(inches)
+    expect(read('Front axle\nhardpoint\tlongitudinal\tlateral\tvertical\nleft\t6\t13\t-3').places).toEqual([
+      ['left', 6, 13, -3],
+    ])
+  })
+  test('in units that are unknown or contradict each other are refused', () => {
+    const unknown = 'There is no unit `furlong`; use mm, cm, m, in, deg or rad.'
+    for (const [text, problem] of [
+      ['name\tx [furlong]\ty [furlong]\tz [furlong]', unknown],
+      ['name\tx\ty\tz\n-\tfurlong\tfurlong\tfurlong', unknown],
+      ['name\tx [deg]\ty [deg]\tz [deg]', 'This is a length, but deg is not a unit of length.'],
+      ['name\tx [in]\ty\tz [in]', 'The coordinates have different units: in, none, in.'],
+      ['name\tx [m]\ty [m]\tz [m]\n\tin\tin\tin', 'The unit `in` below the titles contradicts `m` in them.'],
+    ])
+      expect(read(`${text}\nleft\t6\t13\t-3`), text).toEqual({ places: [], problems: [problem] })
+  })
   test('without names begin where they are pasted', () => {
     expect(read('8\t9\n', 1, 1).places).toEqual([['right', 1, 8, 9]])
     expect(read('1;2;3\n4;5;6\n7;8;9').problems).toEqual(['There are more rows than hardpoints.'])

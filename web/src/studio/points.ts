@@ -14,9 +14,22 @@ export interface PastedTable {
   problems: string[]
 }
 
+/** Titles of the column with the names of hardpoints. */
+const NAMES = ['name', 'hardpoint', 'point']
+
+/** Columns of a pasted table, by its lines of titles and units. */
+interface Heading {
+  /** Column with the names of the hardpoints. */
+  name?: number
+  /** Axes by their columns; empty where no title names an axis. */
+  axes: ReadonlyMap<number, number>
+  unit?: string
+}
+
 /**
  * Reads rows of a spreadsheet: names with three coordinates, or coordinates alone, which are those of the hardpoints
- * from `first` on, beginning with the axis `axis`. A cell may have a unit; an empty one leaves its coordinate.
+ * from `first` on, beginning with the axis `axis`. Titles name the columns in any order; titles or a line below them
+ * may have a unit. A cell may have its own unit; an empty one leaves its coordinate.
  */
 export function pasted(
   text: string,
@@ -30,27 +43,44 @@ export function pasted(
     .split(/\r?\n/)
     .map((row) => cells(row))
     .filter((row) => row.some((cell) => cell !== ''))
+  const isText = (cell: string) => cell !== '' && typeof amount(cell, unit) === 'string'
+  let heading: Heading = { axes: new Map() }
   let next = first
   for (const row of rows) {
-    const [head, ...rest] = row
+    const at = heading.axes.size > 0 ? heading.name : isText(row[0]) ? 0 : undefined
+    const head = at === undefined ? '' : (row[at] ?? '')
     const named = grips.find(({ name }) => name === head)
-    const isText = typeof amount(head, unit) === 'string' && head !== ''
-    // A line of titles, such as `name x y z`.
-    if (isText && !named && rest.slice(0, 3).every((cell) => typeof amount(cell, unit) === 'string')) continue
-    const grip = isText ? named : grips[next++]
+    if (!named && row.slice(0, 4).every((cell) => cell === '' || isText(cell))) {
+      const read = headingOf(row, heading, unit)
+      if (typeof read === 'string') {
+        found.problems.push(read)
+        break
+      }
+      heading = read ?? heading
+      // Other words, such as the title of a group of rows, have no effect.
+      if (read || head !== '') continue
+    }
+    const grip = at === undefined ? grips[next++] : named
     if (!grip) {
-      found.problems.push(isText ? `There is no hardpoint \`${head}\`.` : 'There are more rows than hardpoints.')
-      if (!isText) break
+      found.problems.push(
+        at === undefined
+          ? 'There are more rows than hardpoints.'
+          : head === ''
+            ? 'A row has no name.'
+            : `There is no hardpoint \`${head}\`.`,
+      )
+      if (at === undefined) break
       continue
     }
     const target = place(grip)
-    const numbers = isText ? rest : row
-    const failed = numbers.slice(0, 3).flatMap((cell, k) => {
-      const at = (isText ? 0 : axis) + k
-      if (cell === '' || at > 2) return []
-      const typed = amount(cell, unit)
-      if (typeof typed === 'string') return [`\`${grip.name}\`, ${AXES[at]}: ${typed}`]
-      target.setComponent(at, typed.value)
+    const start = at === undefined ? [0, axis] : [1, 0]
+    const columns = heading.axes.size > 0 ? [...heading.axes] : [0, 1, 2].map((k) => [start[0] + k, start[1] + k])
+    const failed = columns.flatMap(([column, axis]) => {
+      const cell = row[column] ?? ''
+      if (cell === '' || axis > 2) return []
+      const typed = amount(cell, unit, heading.unit)
+      if (typeof typed === 'string') return [`\`${grip.name}\`, ${AXES[axis]}: ${typed}`]
+      target.setComponent(axis, typed.value)
       return []
     })
     if (failed.length > 0) found.problems.push(...failed)
@@ -59,9 +89,50 @@ export function pasted(
   return found
 }
 
-/** Cells of a row: between tabs, or semicolons, or commas with spaces, or spaces. */
+/**
+ * Columns by a row of titles, or with the unit of a row of units; undefined for a row that has neither, and a sentence
+ * where its units cannot be used.
+ */
+function headingOf(row: readonly string[], former: Heading, unit: string): Heading | string | undefined {
+  const titles = row.map((cell) => titleOf(cell))
+  const axes = new Map(
+    titles.flatMap(({ name }, k) => AXES.flatMap((axis, index) => (axis === name ? [[k, index] as const] : []))),
+  )
+  const columns = axes.size > 0 ? axes : former.axes
+  const coordinates = (columns.size > 0 ? [...columns.keys()] : [1, 2, 3]).flatMap((k) => titles[k] ?? [])
+  const units = coordinates.map(
+    ({ name, unit }) => unit ?? (axes.size === 0 && /^\p{L}+$/u.test(name) ? name : undefined),
+  )
+  const [written] = units
+  const isSame = units.every((one) => one === written)
+  if (axes.size === 0) {
+    // Without titles of axes, different words are titles of other kinds.
+    const isOfUnits = units.length >= (columns.size || 2) && !units.includes(undefined) && (isSame || columns.size > 0)
+    if (!isOfUnits) return undefined
+  }
+  if (!isSame) return `The coordinates have different units: ${units.map((one) => one ?? 'none').join(', ')}.`
+  const wrong = written === undefined ? undefined : amount('1', unit, written)
+  if (typeof wrong === 'string') return wrong
+  if (axes.size === 0) {
+    if (former.unit !== undefined && former.unit !== written)
+      return `The unit \`${written}\` below the titles contradicts \`${former.unit}\` in them.`
+    return { ...former, unit: written }
+  }
+  const titled = titles.findIndex(({ name }) => NAMES.includes(name))
+  const others = titles.findIndex((_, k) => !axes.has(k))
+  const name = titled >= 0 ? titled : others
+  return { name: name >= 0 ? name : undefined, axes, unit: written }
+}
+
+/** `x` and `mm` of the title `# X [mm]`; the unit has no capitals either. */
+function titleOf(cell: string): { name: string; unit?: string } {
+  const [name, unit = ''] = cell.toLowerCase().replace(/^#/, '').split(/[[(]/, 2)
+  return { name: name.trim(), unit: unit.replace(/[\])]\s*$/, '').trim() || undefined }
+}
+
+/** Cells of a row: between tabs, or semicolons, or commas with spaces, or spaces other than those before a unit. */
 function cells(row: string): string[] {
-  const mark = row.includes('\t') ? '\t' : row.includes(';') ? ';' : /,\s/.test(row) ? /,\s*/ : /\s+/
+  const mark = row.includes('\t') ? '\t' : row.includes(';') ? ';' : /,\s/.test(row) ? /,\s*/ : /\s+(?![[(])/
   const all = mark instanceof RegExp ? row.trim().split(mark) : row.split(mark)
   return all.map((cell) => cell.trim().replace(/^"(.*)"$/, '$1'))
 }
