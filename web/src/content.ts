@@ -20,6 +20,8 @@ export interface Line {
   /** Listed in the legend, but not drawn. */
   hidden?: boolean
   pick?: () => void
+  /** Heading of its column in a table; by default the label after the title. */
+  heading?: string
   /** Explanation of the label. */
   about?: string
 }
@@ -52,6 +54,11 @@ export interface Content {
 /** Lines of a plot that are not hidden. */
 export function drawnLines({ lines }: Content): Line[] {
   return lines.filter(({ hidden }) => !hidden)
+}
+
+/** Heading of a line's column in a table. */
+export function headingOf({ label, heading }: Line, { title }: Content): string {
+  return heading ?? (label === title ? title : `${title}: ${label}`)
 }
 
 /** The abscissa of a line. */

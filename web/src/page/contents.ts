@@ -27,6 +27,7 @@ import {
   orderedName,
   type Quantity,
   type Report,
+  type Variable,
 } from '../report'
 import { hasOneFreedom, onSideOf, rangeOf } from '../sheet'
 import type { State } from '../state'
@@ -118,10 +119,12 @@ export function valueContent(state: State, subject: Subject): Content {
       const own = several ? orderedName(one, order) : ''
       const alone = design.name || orderedName(one, order)
       const label = !several ? alone : plain ? own : `${own}, ${design.name}`
+      const column = (difference ? 'Δ ' : '') + orderedName(one, order)
+      const heading = design.name ? `${column}: ${design.name}` : column
       const color = several ? hue(k) : (design.color ?? css('--former'))
       const dash = several && plain ? PATTERNS[k % PATTERNS.length] : design.dash
       content.lines.push({
-        ...{ label, color, curve, dash, over: x, width: design.width, about: aboutQuantity(one) },
+        ...{ label, heading, color, curve, dash, over: x, width: design.width, about: aboutQuantity(one) },
         course: difference ? undefined : course(design),
       })
     }
@@ -301,7 +304,11 @@ export function sensitivityContent(state: State, subject: Subject): Content {
   const all = effects(report, subject.quantity, order)
   const own = all.find(({ variable }) => variable === selected)
   const of = state.outdated ? ` (${state.outdated.toLowerCase()})` : ''
-  const title = (own ? derivativeName(quantity, order, selected) : `d ${name}`) + of
+  const peers = all.filter(({ variable }) => variable.unit === selected.unit)
+  const shown = peers.filter(({ variable, share }, rank) => variable === selected || (rank < FEW && share > 0))
+  const heading = (variable: Variable) => derivativeName(quantity, order, variable) + of
+  // Of several variables, the legend names each.
+  const title = own && shown.length === 1 ? heading(selected) : `d ${name}${of}`
   const content: Content = { title, unit: derivativeUnit(quantity, order, selected), lines: [] }
   if (quantity.curves[order].length === 0) return { ...content, unit: '', message: unknown(name) }
   if (!own) {
@@ -313,15 +320,14 @@ export function sensitivityContent(state: State, subject: Subject): Content {
   const at = atAbscissa(state, subject)
   if (typeof at === 'string') return { ...content, message: at }
   const { seen } = at
-  const peers = all.filter(({ variable }) => variable.unit === selected.unit)
   const scale = Math.max(...peers.map(({ sensitivity }) => sensitivity.peaks[order]))
-  const shown = peers.filter(({ variable, share }, rank) => variable === selected || (rank < FEW && share > 0))
   let k = 0
   content.lines = shown.map(({ variable, sensitivity }): Line => {
     const chosen = variable === selected
     const rank = chosen ? 0 : ++k
     return {
       label: variable.name,
+      heading: heading(variable),
       color: chosen ? css('--chosen') : hue(rank - 1),
       dash: PATTERNS[rank % PATTERNS.length],
       curve: quiet(seen(sensitivity.curves[order], variable.index, false), scale),
@@ -339,7 +345,11 @@ export function sensitivityContent(state: State, subject: Subject): Content {
     .join(' ')
   if (!differences) return overOther(state, subject.over, { ...content, caption: rest })
   const curve = seen(differences.curves[order], selected.index, true)
-  content.lines.push({ label: 'finite differences', color: css('--ink'), curve, marks: withGaps(curve) })
+  const label = 'finite differences'
+  content.lines.push({
+    ...{ label, heading: `${heading(selected)}: ${label}`, color: css('--ink') },
+    ...{ curve, marks: withGaps(curve) },
+  })
   const caption =
     `${rest} ○ checked by re-solving at ±${figure(Number(differences.step.toPrecision(2)), differences.unit)} ` +
     `(max. difference ${number(differences.worst[order], 2)}).`

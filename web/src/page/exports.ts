@@ -1,4 +1,4 @@
-import { abscissaOf } from '../content'
+import { abscissaOf, headingOf } from '../content'
 import type { Curve } from '../curve'
 import { css } from '../dom'
 import { csvOf, type Column } from '../export/csv'
@@ -85,11 +85,11 @@ function columns({ report }: State, figures: Figure[]): Column[] {
   const parts: { xs: Curve; part?: Part }[] = []
   for (const { plot } of figures) {
     const { content } = plot
-    const { title, unit, over, part } = content
+    const { unit, over, part } = content
     for (const line of content.lines.filter(({ free, hidden }) => !free && !hidden)) {
       const xs = abscissaOf(line, content, report.times)
       parts.push({ xs, part })
-      const label = line.label === title ? title : `${title}: ${line.label}`
+      const label = headingOf(line, content)
       if (over && !columns.some(({ curve }) => isSame(curve, xs))) {
         const isTaken = columns.some((column) => column.label === over.label)
         columns.push({ label: isTaken ? `${over.label} of ${label}` : over.label, unit: over.unit, curve: xs })
