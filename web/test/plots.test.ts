@@ -1,8 +1,12 @@
-import { describe, expect, test } from 'vitest'
-import { type Content, drawnRange, drawnSteps, type Line } from '../src/content'
+import { afterAll, describe, expect, test, vi } from 'vitest'
+import { type Content, drawnRange, drawnSteps, headingOf, type Line } from '../src/content'
 import { changeFrom, crossings } from '../src/curve'
 import { linearAxis, ticks } from '../src/export/axis'
-import { measuredOf } from '../src/page/measured'
+import { sensitivityContent, valueContent } from '../src/page/contents'
+import { measuredOf as measuredFile, type MeasuredSubject } from '../src/page/measured'
+import type { Variable } from '../src/report'
+import { State } from '../src/state'
+import { crank } from './mechanisms'
 
 const curve = (...values: number[]) => Float32Array.from(values)
 const line = (values: Float32Array, over?: Float32Array): Line => ({ label: 'toe', color: '#000', curve: values, over })
@@ -48,6 +52,45 @@ describe('a plot over a quantity that goes back and forth along one line', () =>
   })
 })
 
+describe('columns of exported curves', () => {
+  vi.stubGlobal('document', { documentElement: { classList: { contains: () => false } } })
+  vi.stubGlobal('matchMedia', () => ({ matches: false }))
+  vi.stubGlobal('getComputedStyle', () => ({ getPropertyValue: () => '#000' }))
+  afterAll(() => void vi.unstubAllGlobals())
+  const STEPS = 3
+  const quantity = (index: number, name: string) => ({
+    ...{ index, name, group: 'measure', kind: 'angle', units: ['deg', 'deg/s', 'deg/s^2'] as const },
+    curves: [curve(0, 1, 2), curve(1, 1, 1), curve(0, 0, 0)] as const,
+    wanted: curve(),
+  })
+  const variable = (index: number, name: string): Variable => ({
+    ...crank().variables[0],
+    ...{ index, name, unit: 'mm', typical: null, note: '' },
+    sensitivities: new Map([
+      [0, { curves: [curve(1, 2, 3 + index), curve(), curve()], peaks: [3, 0, 0], extremes: [3 + index, 0, 0] }],
+    ]),
+  })
+  const report = crank({
+    times: curve(...Array(STEPS).keys()),
+    quantities: [quantity(0, 'toe'), quantity(1, 'camber')],
+    variables: [variable(0, 'st_y'), variable(1, 'ti_z')],
+  })
+  const headings = (content: Content) => content.lines.map((line) => headingOf(line, content))
+
+  test('name the quantity, also in a plot of several', () => {
+    const subject = { quantity: 0, order: 0 as const, also: [1] }
+    expect(headings(valueContent(new State(report), subject))).toEqual(['toe', 'camber'])
+    const changes = valueContent(new State(report), { ...subject, difference: true })
+    expect(headings(changes)).toEqual(['Δ toe', 'Δ camber'])
+  })
+
+  test('name the variable of each derivative, whichever is selected', () => {
+    const content = sensitivityContent(new State(report), { quantity: 0, order: 0 })
+    expect(content.title).toBe('d toe')
+    expect(headings(content).sort()).toEqual(['d toe / d st_y', 'd toe / d ti_z'])
+  })
+})
+
 describe('an axis of a single value', () => {
   test('has it in the middle, with round numbers on both sides', () => {
     for (const value of [1, 0.3, -2e6, 0]) {
@@ -83,6 +126,7 @@ describe('values at an abscissa', () => {
 })
 
 describe('measured data', () => {
+  const measuredOf = (text: string, file: string, subject: MeasuredSubject) => measuredFile(text, file, subject).curves
   const angles = ['toe', 'camber'].map((name) => ({ name, unit: 'deg' }))
   const subject = { quantities: angles, over: { name: 'wheel_travel', unit: 'mm' } }
 
@@ -109,8 +153,7 @@ describe('measured data', () => {
 
   test('are converted from units that are made of others, and refused where the page has no such unit', () => {
     const speed = { quantities: [{ name: 'speed', unit: 'deg/s' }], over: { name: 'time', unit: 's' } }
-    const read = (text: string, subject: Parameters<typeof measuredOf>[2] = speed) =>
-      measuredOf(text, 'rig.csv', subject)[0]
+    const read = (text: string, subject: MeasuredSubject = speed) => measuredOf(text, 'rig.csv', subject)[0]
     const rig = read('time [min],speed [rad/s]\n0.5,1\n')
     expect([rig.x[0], rig.y[0]]).toEqual([30, Math.fround(180 / Math.PI)])
     expect(read('time [ms],speed [rpm]\n500,1\n').y[0]).toBeCloseTo(6, 5)
@@ -123,7 +166,7 @@ describe('measured data', () => {
   })
 
   test('of another measure or over another one are no data of this plot', () => {
-    const known = ['time', 'toe', 'camber', 'wheel_travel']
+    const known = ['toe', 'camber', 'wheel_travel']
     const read =
       (text: string, isForUnnamed = true) =>
       () =>
@@ -131,6 +174,10 @@ describe('measured data', () => {
     expect(read('time [s],toe [deg]\n0,1\n')).toThrow(
       '`rig.csv` has no column `wheel_travel`: it has time [s], toe [deg]',
     )
+    // `t` is time in the tables of the command.
+    expect(read('t,toe\n0,1\n')).toThrow('`rig.csv` has no column `wheel_travel`')
+    const overTime = { quantities: angles, over: { name: 'time', unit: 's' } }
+    expect(measuredOf('toe,camber,t [ms]\n1,2,500\n', 'rig.csv', overTime)[1].x[0]).toBe(0.5)
     expect(read('wheel_travel,time\n0,1\n')).toThrow('`rig.csv` has no column `toe`')
     expect(read('Travel,Toe at rig\n0,1\n')()[0].y[0]).toBe(1)
     expect(read('Travel,Toe at rig\n0,1\n', false)).toThrow('`rig.csv` has no column `wheel_travel`')
@@ -140,6 +187,35 @@ describe('measured data', () => {
       measuredOf(text, 'rig.csv', { quantities: [velocity], over: subject.over, known })
     expect(rate('wheel_travel,toe [rad/s]\n0,1\n')()[0].y[0]).toBeCloseTo(180 / Math.PI, 4)
     expect(rate('wheel_travel,toe [deg]\n0,1\n')).toThrow('`rig.csv` has no column `toe velocity`')
+  })
+
+  test('have lines that cannot be read, which are counted', () => {
+    const read = (text: string) => {
+      const { curves, unread } = measuredFile(text, 'rig.csv', subject)
+      return [...curves.map(({ y }) => [...y].filter((value) => !Number.isNaN(value))), unread]
+    }
+    expect(read('wheel_travel,toe\n-50,1,25\n0,0.5,\n')).toEqual([
+      [0.5],
+      'Line 2 of `rig.csv` could not be read: `-50,1,25`',
+    ])
+    expect(read('# rig\nwheel_travel;toe\n\n-50;1.250,5\n0;0,5\n10;\n60\n')).toEqual([
+      [0.5],
+      '3 lines of `rig.csv` could not be read. The first is line 4: `-50;1.250,5`',
+    ])
+    // An empty cell is no value.
+    expect(read('wheel_travel,toe,camber\n0,1,\n1,,2\n')).toEqual([[1], [2], ''])
+  })
+
+  test('with numbers that are not finite are refused', () => {
+    for (const [x, y] of [
+      ['1e400', '1'],
+      ['1', '1e400'],
+      ['1', '-Infinity'],
+      ['1', '1e39'],
+    ])
+      expect(() => measuredOf(`wheel_travel,toe\n0,0\n${x},${y}\n`, 'rig.csv', subject)).toThrow(
+        `Line 3 of \`rig.csv\`: \`${x === '1' ? y : x}\` is not finite`,
+      )
   })
 
   test('that are none are refused by name', () => {

@@ -333,7 +333,7 @@ export class Figure {
     return {
       quantities: [quantity, ...also].map((index) => wanted(index, order)),
       over: over === undefined ? { name: 'time', unit: units.time } : wanted(over, 0),
-      known: ['time', ...quantities.map(({ name }) => name)],
+      known: quantities.map(({ name }) => name),
       isForUnnamed: of === this.#shownNames,
     }
   }
@@ -343,7 +343,9 @@ export class Figure {
     const failures = this.#unread ? [this.#unread] : []
     const found = this.#files.flatMap((file) => {
       try {
-        return measuredOf(file.text, file.name, this.#measuredSubject(file))
+        const { curves, unread } = measuredOf(file.text, file.name, this.#measuredSubject(file))
+        if (unread) failures.push(unread)
+        return curves
       } catch (error) {
         failures.push(messageOf(error))
         return []
