@@ -16,8 +16,8 @@ export interface Amount {
 
 /**
  * Reads a number as the command's `--set` does: `2`, `2mm`, `0.5 deg`; also with a decimal comma, as a fraction such
- * as `1/2 in`, and with units in capitals; a number without a unit is in the unit `usual`. Returns a sentence where it is
- * none.
+ * as `1/2 in`, and with units in capitals; a number without a unit is in the unit `usual`. Returns a sentence where it
+ * is none.
  */
 export function amount(text: string, unit: string, usual = unit): Amount | string {
   const written = text.trim().replaceAll('−', '-')

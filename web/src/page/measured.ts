@@ -41,7 +41,8 @@ const SEPARATORS = [';', '\t', ',']
 
 /**
  * Curves of a file of comma-separated values for a plot of some quantities over another one, or over time: columns by
- * their names, else the first two columns unless these have names of other quantities. An error says what is missing, or which number is not finite.
+ * their names, else the first two columns unless these have names of other quantities. An error says what is missing,
+ * or which number is not finite.
  */
 export function measuredOf(
   text: string,
