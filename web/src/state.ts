@@ -97,6 +97,7 @@ export class State {
   #onChange: (() => void)[] = []
   #pointed?: number
   #solved?: Design
+  #isShort = false
   #sensitivities?: { report: Report; settings: string }
   #edition = 0
   #ending = new AbortController()
@@ -389,14 +390,27 @@ export class State {
     this.#changed()
   }
 
-  /** The design with these changes was solved: it is the present one. Later changes may be on their way already. */
-  solved(design: Design | undefined, settings: VariableSetting[], refusal: string, last: boolean): void {
+  /** Sentence on why the present design is not the requested one; empty if it is. */
+  get shortfall(): string {
+    return this.#isShort ? `The design stops before the requested one (${this.refusal}).` : ''
+  }
+
+  /**
+   * The design with these changes was solved: it is the present one, and `isShort` if the requested one was not reached.
+   * Later changes may be on their way already.
+   */
+  solved(
+    design: Design | undefined,
+    settings: VariableSetting[],
+    { refusal = '', isShort = false, last }: { refusal?: string; isShort?: boolean; last: boolean },
+  ): void {
     if (last) {
       this.#clear()
       this.#apply(settings)
     }
     this.#solved = settings.length > 0 ? design : undefined
     this.refusal = refusal
+    this.#isShort = isShort
     this.#edition++
     this.choose({})
   }

@@ -245,7 +245,7 @@ test('a design that the engine solves has its own shapes, pairs and contacts', a
   const state = new State(report)
   const before = contacts(state)
   state.adjust(change)
-  state.solved(design(json.design!, decode), change, '', true)
+  state.solved(design(json.design!, decode), change, { last: true })
   // The rod is nearer to the screws, and touches for longer.
   expect(before[0][0]).toBeCloseTo(0.321025628612, 9)
   expect(contacts(state)[0][0]).toBeLessThan(before[0][0])

@@ -1,4 +1,4 @@
-import type { Page } from 'playwright-core'
+import type { Locator, Page } from 'playwright-core'
 import { describe, expect, inject, test } from 'vitest'
 import { pages, ready, settled } from './pages'
 import { drawn } from './person'
@@ -138,6 +138,52 @@ describe('a hardpoint', () => {
     await settled(page)
     expect(await field('x').inputValue()).toMatch(/^-?\d+(\.\d{1,2})?$/)
     expect(await page.getByTestId('refusal').innerText()).toMatch(/cannot move beyond t = [\d.]+ s|cannot be assembled/)
+  })
+
+  test('that locks under an entry has the value of the design, typed again as well, and the reason is visible', async () => {
+    await open('rssr')
+    await page.keyboard.press('Escape')
+    await page.getByTestId('open-points').click()
+    const cell = page.getByTestId('point-A').locator('input').first()
+    const change = page.getByTestId('variable-A_x').getByTestId('change-value')
+    const news = page.getByTestId('points-news')
+    const shortfall = page.getByTestId('shortfall')
+    const enter = async (input: Locator, text: string) => {
+      await input.fill(text)
+      await input.press('Enter')
+      await settled(page)
+    }
+    const paste = async () => {
+      await cell.evaluate((input) => {
+        const data = new DataTransfer()
+        data.setData('text/plain', '10000\t60')
+        input.dispatchEvent(new ClipboardEvent('paste', { clipboardData: data, bubbles: true, cancelable: true }))
+      })
+      await settled(page)
+    }
+    const reason = /The design stops before the requested one \(.*cannot (move beyond t = [\d.]+ s|be assembled)/
+    for (const entry of [
+      () => enter(change, '9000'),
+      () => enter(change, '9000'),
+      () => enter(cell, '9000'),
+      () => enter(cell, '9000'),
+      paste,
+    ]) {
+      await entry()
+      const [by, place] = [Number(await change.inputValue()), Number(await cell.inputValue())]
+      expect(by).toBeLessThan(8000)
+      expect(place).toBeCloseTo(80 + by, 2)
+      expect(await shortfall.innerText()).toMatch(reason)
+      expect(await news.innerText()).toMatch(reason)
+    }
+    expect(await news.innerText()).toContain('1 hardpoint set.')
+    // The slider has no bounds, and is extended to the value.
+    const slider = page.getByTestId('variable-A_x').getByTestId('change')
+    const step = Number(await slider.getAttribute('step'))
+    expect(Math.abs(Number(await slider.inputValue()) - Number(await change.inputValue()))).toBeLessThanOrEqual(step)
+    await enter(change, '1')
+    expect(await shortfall.innerText()).toBe('')
+    expect(await news.innerText()).not.toMatch(reason)
   })
 
   test('moved with its mirror image reaches the variable of both sides', async () => {

@@ -47,7 +47,9 @@ export function variables(state: State, limits?: VariableLimits): HTMLElement {
     oninput: () => filter(),
   })
   search.hidden = report.variables.length <= MANY
-  const note = el('p', { class: 'note', 'data-testid': 'variable-note', 'aria-live': 'polite' })
+  const shortfall = el('span', { class: 'shortfall', role: 'status', 'data-testid': 'shortfall' })
+  const description = el('span', { 'aria-live': 'polite' })
+  const note = el('p', { class: 'note', 'data-testid': 'variable-note' }, shortfall, description)
   const rows = report.variables.map((variable) => row(state, variable, limits))
   let order = rows
 
@@ -94,7 +96,8 @@ export function variables(state: State, limits?: VariableLimits): HTMLElement {
     for (const item of rows) item.sync()
     resetAll.hidden = !state.changed
     const variable = report.variables[choice.variable]
-    note.replaceChildren(...prose(statusOf(state) + (variable?.note || variable?.description || '')))
+    shortfall.replaceChildren(...prose(state.shortfall && `${state.shortfall} `))
+    description.replaceChildren(...prose(statusOf(state) + (variable?.note || variable?.description || '')))
     if (choice.variable === shown) return
     shown = choice.variable
     const { element } = rows[shown]
@@ -146,7 +149,14 @@ function row(state: State, variable: Variable, limits: VariableLimits | undefine
     },
     name,
   )
-  const { slider, field, reset } = rowControls(state, variable, [low, high], step)
+  /** Shown rows; a choice changes two of many. */
+  let shown = ''
+  const change = (by: number) => {
+    // The slider and the field are not what was shown: the design may stay as it is.
+    shown = ''
+    state.change(index, by)
+  }
+  const { slider, field, reset } = rowControls(change, variable, [low, high], step)
   const bounded = able && limits ? limitControls(variable, [low, high], limits) : undefined
   const bar = el('span', { class: 'bar-of', 'aria-hidden': 'true' })
   const size = el('span', { class: 'size' })
@@ -175,8 +185,6 @@ function row(state: State, variable: Variable, limits: VariableLimits | undefine
     if (!(event.target as HTMLElement).closest('button') && state.choice.variable !== index)
       state.choose({ variable: index })
   })
-  /** Shown rows; a choice changes two of many. */
-  let shown = ''
   const digits = step > 0 ? Math.max(0, -Math.floor(Math.log10(step))) : 0
   return {
     variable,
@@ -190,6 +198,7 @@ function row(state: State, variable: Variable, limits: VariableLimits | undefine
       button.tabIndex = chosen ? 0 : -1
       if (bounded) bounded.sync(chosen)
       slider.tabIndex = field.input.tabIndex = reset.tabIndex = chosen ? 0 : -1
+      widen(slider, by, step)
       if (Number(slider.value) !== by) slider.value = String(by)
       field.show(Number(by.toFixed(Math.max(digits, 3))))
       slider.setAttribute('aria-valuetext', figure(by, unit))
@@ -206,9 +215,16 @@ function row(state: State, variable: Variable, limits: VariableLimits | undefine
   }
 }
 
+/** Extends a slider by whole steps to a value outside its range. */
+function widen(slider: HTMLInputElement, value: number, step: number): void {
+  if (step === 0) return
+  if (value > Number(slider.max)) slider.max = String(Math.ceil(value / step) * step)
+  if (value < Number(slider.min)) slider.min = String(Math.floor(value / step) * step)
+}
+
 /** Slider and field for the change of a variable, and the button that resets it. */
-function rowControls(state: State, variable: Variable, [low, high]: [number, number], step: number) {
-  const { index, name, unit } = variable
+function rowControls(change: (by: number) => void, variable: Variable, [low, high]: [number, number], step: number) {
+  const { name, unit } = variable
   let pending: number | undefined
   const changeSoon = (by: number) => {
     // A slider reports more often than a frame can be drawn.
@@ -216,7 +232,7 @@ function rowControls(state: State, variable: Variable, [low, high]: [number, num
       requestAnimationFrame(() => {
         const last = pending!
         pending = undefined
-        state.change(index, last)
+        change(last)
       })
     pending = by
   }
@@ -238,7 +254,7 @@ function rowControls(state: State, variable: Variable, [low, high]: [number, num
     plus: 'sign',
     apply: (by) => {
       const kept = limited(by, variable.bounds)
-      state.change(index, kept)
+      change(kept)
       field.show(kept)
       return kept === by ? undefined : `The bound of \`${name}\` is ${figure(kept, unit)}.`
     },
@@ -251,7 +267,7 @@ function rowControls(state: State, variable: Variable, [low, high]: [number, num
       title: `reset ${name}`,
       'aria-label': `reset ${name}`,
       'data-testid': 'reset',
-      onclick: () => state.change(index, 0),
+      onclick: () => change(0),
     },
     '↺',
   )

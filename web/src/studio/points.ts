@@ -142,7 +142,9 @@ export class PointsPane {
   readonly element = el('section', { class: 'points', 'aria-label': 'Hardpoints', 'data-testid': 'points' })
   #mover?: Mover
   #rows: { grip: MovableHardpoint; fields: NumberField[]; change: HTMLElement }[] = []
-  #news = el('p', { class: 'news', role: 'status', 'data-testid': 'points-news' })
+  #said = el('span')
+  #shortfall = el('span', { class: 'shortfall' })
+  #news = el('p', { class: 'news', role: 'status', 'data-testid': 'points-news' }, this.#said, this.#shortfall)
 
   constructor(
     /** Called when a change is complete. */
@@ -162,6 +164,7 @@ export class PointsPane {
       })
       change.textContent = mover.differ(by.length(), 0) ? number(by.length(), 4) : ''
     }
+    this.#shortfall.replaceChildren(...prose(mover.state.shortfall))
   }
 
   #make(mover: Mover): void {
@@ -222,6 +225,7 @@ export class PointsPane {
           step: 1,
           plus: 'adds',
           apply: (value) => {
+            this.#said.replaceChildren()
             mover.move(grip, mover.place(grip).setComponent(k, value))
             this.onRelease()
             return mover.state.bound || undefined
@@ -251,7 +255,9 @@ export class PointsPane {
     mover.moveAll(places)
     this.onRelease()
     const set = `${places.size} ${places.size === 1 ? 'hardpoint' : 'hardpoints'} set.`
-    this.#news.replaceChildren(...prose([set, ...problems].join(' ')))
+    const bound = mover.state.bound && `${mover.state.bound}.`
+    const sentences = [set, ...(bound ? [bound] : []), ...problems]
+    this.#said.replaceChildren(...prose(sentences.map((sentence) => `${sentence} `).join('')))
     this.show(mover)
   }
 
@@ -267,9 +273,9 @@ export class PointsPane {
     ])
     try {
       await navigator.clipboard.writeText(rows.map((row) => row.join('\t')).join('\n'))
-      this.#news.textContent = 'Copied.'
+      this.#said.textContent = 'Copied. '
     } catch {
-      this.#news.textContent = 'The browser does not allow copying here.'
+      this.#said.textContent = 'The browser does not allow copying here. '
     }
   }
 }

@@ -636,7 +636,7 @@ export class Studio {
     const { state } = this
     if (wanted.length === 0) {
       this.#accepted = []
-      return state.solved(undefined, [], '', !this.#wanted)
+      return state.solved(undefined, [], { last: !this.#wanted })
     }
     try {
       const from = this.#accepted
@@ -647,7 +647,11 @@ export class Studio {
       const { part, why } = answer.json
       const reached = part === 1 ? wanted : between(this.#accepted, wanted, part)
       this.#accepted = reached
-      state.solved(this.#read(answer.json.design, answer, reached), reached, why?.message ?? '', !this.#wanted)
+      state.solved(this.#read(answer.json.design, answer, reached), reached, {
+        refusal: why?.message,
+        isShort: part < 1,
+        last: !this.#wanted,
+      })
     } catch (error) {
       if (version !== this.#version) return
       this.#showStatus(messageOf(error))
