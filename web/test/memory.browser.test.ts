@@ -1,10 +1,11 @@
+import { readFileSync } from 'node:fs'
 import type { Browser, Page } from 'playwright-core'
 import { afterAll, afterEach, beforeAll, describe, expect, inject, test } from 'vitest'
 import { launch, NO_3D, visit, type Visit } from './browser'
 import { ready } from './pages'
 import { slide } from './person'
 
-const { models } = inject('samples')
+const { cases, models } = inject('samples')
 
 /** With the view, and without it where the camera does not matter. */
 let browser: Browser
@@ -133,6 +134,42 @@ describe('work on a design', () => {
       .poll(() => other.page.getByTestId('variable-tie_rod_outer_z').getByTestId('change-value').inputValue())
       .toBe('5')
     await other.page.context().close()
+  })
+
+  test('goes with a link together with its case', async () => {
+    visited = await visit(flat, cases)
+    page = visited.page
+    await ready(page)
+    await page.getByTestId('case').selectOption('steer')
+    const title = (page: Page) => page.getByTestId('title').innerText()
+    await expect.poll(() => title(page)).toContain('steer')
+    await ready(page)
+    await page.getByTestId('export').click()
+    await page.getByTestId('export-link').click()
+    await page.waitForFunction(() => location.hash.startsWith('#state='))
+    const other = await visit(flat, page.url())
+    await expect.poll(() => title(other.page)).toContain('steer')
+    await other.page.context().close()
+  })
+
+  test('is not left without a warning where its text has errors, and its export is the last valid text', async () => {
+    await open('macpherson')
+    const asked: string[] = []
+    page.on('dialog', (dialog) => {
+      asked.push(dialog.type())
+      void dialog.accept()
+    })
+    await page.getByTestId('open-model').click()
+    await page.getByTestId('model-text').click()
+    await page.keyboard.press('Control+Home')
+    await page.keyboard.type('nonsense = 1\n')
+    await expect.poll(() => page.getByTestId('model-messages').innerText()).toContain('nonsense')
+    await page.getByTestId('export').click()
+    const [download] = await Promise.all([page.waitForEvent('download'), page.getByTestId('export-toml').click()])
+    expect(readFileSync(await download.path(), 'utf8')).not.toContain('nonsense')
+    await expect.poll(() => page.getByTestId('studio-status').innerText()).toContain('Exported the last valid text')
+    await page.reload()
+    await expect.poll(() => asked).toEqual(['beforeunload'])
   })
 
   test('is not left without a warning where the browser keeps nothing', async () => {

@@ -186,6 +186,40 @@ test('a change that the text cannot have is not saved, and the page says why unt
   expect(readFileSync(file, 'utf8')).toBe(text)
 })
 
+test('a text with errors is saved after a second confirmation only, and as it is visible', async () => {
+  const page = await open(await start())
+  await page.waitForFunction(() => document.getElementById('page')!.dataset.engine === 'ready')
+  await page.getByTestId('open-model').click()
+  await page.getByTestId('model-text').click()
+  const type = async (line: string) => {
+    await page.keyboard.press('Control+Home')
+    await page.keyboard.type(`${line}\n`)
+    await page.locator('[data-testid=model-pane][aria-busy=false]').waitFor()
+  }
+  const asked: string[] = []
+  page.on('dialog', (dialog) => {
+    asked.push(dialog.type())
+    void dialog.dismiss()
+  })
+  await type('nonsense = 1')
+  expect(await page.getByTestId('model-status').innerText()).toContain('The page shows the last valid model.')
+  const note = page.getByTestId('note-saving')
+  for (const save of [() => page.keyboard.press('Control+s'), () => page.getByTestId('save').click()]) {
+    await save()
+    await expect.poll(() => note.innerText()).toContain('Not saved: the text is not a valid model.')
+    expect(readFileSync(file, 'utf8')).toBe(text)
+  }
+  await page.evaluate(() => setTimeout(() => location.reload()))
+  await expect.poll(() => asked).toEqual(['beforeunload'])
+  // What is typed after the question is saved as well.
+  await page.getByTestId('model-text').click()
+  await type('# unfinished')
+  await page.getByRole('button', { name: 'Save anyway' }).click()
+  await page.getByText('Saved').waitFor()
+  expect(readFileSync(file, 'utf8')).toBe(`# unfinished\nnonsense = 1\n${text}`)
+  await expect.poll(() => page.getByTestId('save').isDisabled()).toBe(true)
+})
+
 test('points that are clicked on the picture become a task, whose answers are listed with their pages', async () => {
   copyFileSync(join(MODELS, 'jansen.toml'), join(folder, 'jansen.toml'))
   const page = await open(await start(0, 'jansen.toml'), true, browser)

@@ -54,6 +54,8 @@ export interface Options {
   check: Checker
   /** A text that was typed is valid: the page can show it. */
   onValid: (text: string) => void
+  /** The text was changed: it may be valid or not. */
+  onEdit?: () => void
   /** Schema of the file, for the completion of keys and words. */
   schema?: Schema
 }
@@ -63,6 +65,8 @@ export interface Editor {
   readonly element: HTMLElement
   /** Present text, valid or not. */
   readonly text: string
+  /** Present text, unless the page shows it: it has errors, or is not checked yet. */
+  readonly unshown: string | undefined
   /**
    * Puts another text in its place, valid and shown by the page already, by the smallest change: the cursor, what is
    * seen and the steps of undo stay. It is one step, or part of the one before where that came from outside too
@@ -82,7 +86,7 @@ export interface Editor {
 const outside = Annotation.define<{ sameStep: boolean }>()
 
 /** Makes the pane of the model's text; put its element into the page before it is given the focus. */
-export function editor({ text, check, onValid, schema }: Options): Editor {
+export function editor({ text, check, onValid, onEdit, schema }: Options): Editor {
   let lineBreak = lineBreakOf(text)
   /** The text that the page shows: the last valid one. */
   let shown = ''
@@ -122,6 +126,7 @@ export function editor({ text, check, onValid, schema }: Options): Editor {
     element.setAttribute('aria-busy', 'true')
     clearTimeout(waiting)
     waiting = setTimeout(() => void examine(), PAUSE)
+    onEdit?.()
   }
   const examine = async (tries = TRIES) => {
     const [mine, text] = [version, present()]
@@ -186,11 +191,16 @@ export function editor({ text, check, onValid, schema }: Options): Editor {
     get text() {
       return present()
     },
+    get unshown() {
+      const text = present()
+      return text === shown ? undefined : text
+    },
     setText: (text, sameStep = false) => {
       lineBreak = lineBreakOf(text)
       const made = changes(view.state.doc.toString().split('\n'), text.split(/\r\n?|\n/))
       if (made.length > 0) view.dispatch({ changes: made, annotations: outside.of({ sameStep }) })
       shown = present()
+      onEdit?.()
     },
     showMessages: (messages) => {
       solved = messages

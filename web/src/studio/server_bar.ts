@@ -14,7 +14,10 @@ import {
 
 /** The present text of the model. */
 export interface Text {
+  /** Text of the design that is shown. */
   text(): Promise<string>
+  /** Text to be saved: that of the editor, valid or not, which may not be shown yet. */
+  visible(): Promise<string>
   replace(text: string): void
   onChange(listener: () => void): void
 }
@@ -75,7 +78,7 @@ class Desk {
     notices: HTMLElement,
   ) {
     this.notes = new Notes(notices)
-    void text.text().then((present) => {
+    void text.visible().then((present) => {
       this.saved ??= present
       void this.compare()
     })
@@ -116,28 +119,29 @@ class Desk {
 
   private async compare(): Promise<void> {
     // A design without a text differs from that on disk; saving it gives the reason.
-    const present = await this.text.text().catch(() => undefined)
+    const present = await this.text.visible().catch(() => undefined)
     if (present !== undefined) this.notes.drop('unwritten')
     this.button.disabled = this.saved === undefined || present === this.saved
     this.button.classList.toggle('unsaved', this.isUnsaved())
   }
 
-  async save(): Promise<void> {
+  /** Saves the present text; with `anyway` also what is no valid model. */
+  async save(anyway = false): Promise<void> {
     let present: string
     try {
-      present = await this.text.text()
+      present = await this.text.visible()
     } catch (error) {
       return this.notes.show('unwritten', `Not saved: ${messageOf(error)}.`, { stop: true })
     }
-    await this.put(present)
+    await this.put(present, anyway)
   }
 
-  /** Saves a text; with `anyway` also what is no valid model. */
+  /** Saves a text. */
   async put(text: string, anyway = false): Promise<void> {
-    await this.asking(async () => this.after(await this.server.save(text, anyway), text, () => this.put(text, true)))
+    await this.asking(async () => this.after(await this.server.save(text, anyway), text))
   }
 
-  private after(saved: SaveOutcome, text: string, anyway: () => Promise<void>): void {
+  private after(saved: SaveOutcome, text: string): void {
     this.notes.drop('saving')
     if (saved.outcome === 'saved') {
       this.saved = text
@@ -149,7 +153,7 @@ class Desk {
       this.notes.show('saving', 'Not saved: the text is not a valid model.', {
         stop: true,
         detail: saved.text,
-        actions: { 'Save anyway': () => void anyway() },
+        actions: { 'Save anyway': () => void this.save(true) },
       })
     } else if (saved.outcome === 'exists')
       this.notes.show('saving', 'Not saved: a model of that name exists already.', { stop: true })
@@ -233,7 +237,7 @@ class Desk {
       event.preventDefault()
       const file = name.value.endsWith('.toml') ? name.value : `${name.value}.toml`
       try {
-        const present = await this.text.text()
+        const present = await this.text.visible()
         const saved = await this.server.saveAs(file, present)
         if (saved.outcome === 'saved') {
           this.button.disabled = true

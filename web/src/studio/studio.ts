@@ -82,6 +82,8 @@ export class Studio {
   /** Text of the last drawing that was shown. */
   #drawn?: string
   readonly #listeners: (() => void)[] = []
+  /** Called at every change of the editor's text. */
+  readonly #editListeners: (() => void)[] = []
   #editor?: Editor
   #grips?: Grips
   #mover?: Mover
@@ -153,7 +155,9 @@ export class Studio {
     addEventListener('pagehide', () => this.#save())
     addEventListener('beforeunload', (event) => {
       this.#save()
-      if (this.#storage.failed && this.history.changed) event.preventDefault()
+      // The browser keeps designs only. The server's part of the bar knows what is saved on disk.
+      const isLost = !this.#server && this.#editor?.unshown !== undefined
+      if (isLost || (this.#storage.failed && this.history.changed)) event.preventDefault()
     })
     const host = {
       studies: new Workers(module, (text) => ({ ...this.model, text })),
@@ -206,8 +210,12 @@ export class Studio {
     const server = connect(document)
     const own = {
       text: () => this.#currentText(),
+      visible: async () => this.#editor?.unshown ?? this.#currentText(),
       replace: (text: string) => void this.replace(text, 'from disk'),
-      onChange: (listener: () => void) => this.onText(listener),
+      onChange: (listener: () => void) => {
+        this.onText(listener)
+        this.#editListeners.push(listener)
+      },
     }
     this.#server = server?.file ? serverBar(server, own) : undefined
     // A drawing would replace the model that the server's file is of.
@@ -312,7 +320,7 @@ export class Studio {
 
   /** Shows another text. */
   async replace(text: string, label: string): Promise<void> {
-    if (text === this.#text && !this.#unwritten) return
+    if (text === this.#text && !this.#unwritten) return this.#editor?.setText(text)
     this.history.go({ text, settings: [], label })
     const solved = this.#openModel({ ...this.model, text }, [])
     this.#setText(text)
@@ -362,7 +370,11 @@ export class Studio {
     {
       name: 'Model as TOML',
       testId: 'export-toml',
-      run: async () => save(new Blob([await this.#currentText()], { type: 'application/toml' }), this.#file),
+      run: async () => {
+        save(new Blob([await this.#currentText()], { type: 'application/toml' }), this.#file)
+        if (this.#editor?.unshown !== undefined)
+          this.#showStatus('Exported the last valid text, without the edits since then in the pane of the model.')
+      },
     },
     {
       name: 'Page with this design',
@@ -976,6 +988,7 @@ export class Studio {
           (await this.#checks.ask<CheckReply>({ ask: 'check', model: { ...this.model, text } })).json.messages,
       },
       onValid: (text) => void this.replace(text, 'typed'),
+      onEdit: () => this.#editListeners.forEach((listener) => listener()),
     })
     return this.#editor.element
   }
