@@ -19,6 +19,8 @@ export interface Session {
   compared: string[]
   choices: ChoiceMemory
   page: PageMemory
+  /** Case that is shown; missing in what was stored before it was kept. */
+  case?: string | null
   /** Time of the last change, in milliseconds since 1970. */
   saved: number
 }

@@ -455,6 +455,7 @@ export class Studio {
       compared: compared.map(({ name }) => name),
       choices: this.state.memory,
       page: this.made.memory,
+      case: this.model.case,
       saved: Date.now(),
     }
   }
@@ -494,7 +495,8 @@ export class Studio {
   }
 
   /** Goes on with stored or linked work. */
-  async #resume({ design, named, compared, choices, page }: Session, label: string): Promise<void> {
+  async #resume(session: Session, label: string): Promise<void> {
+    const { design, named, compared, choices, page, case: shown = this.model.case } = session
     const { history } = this
     const step = ({ text, settings }: SavedDesign, label: string): Step => ({
       text: text ?? history.first.text,
@@ -507,7 +509,7 @@ export class Studio {
     this.#recalled = { choices, page }
     const { text, settings } = step(design, label)
     history.go({ text, settings, label })
-    await this.#openModel({ ...this.model, text }, [...settings])
+    await this.#openModel({ ...this.model, text, case: shown }, [...settings])
   }
 
   /** Puts a link with the present design into the address and the clipboard. */
