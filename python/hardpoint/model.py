@@ -210,8 +210,8 @@ class Model:
             >>> free = model.with_(joints={"tie_rod": None}, bodies={"tie_rod": None})
             >>> faster = model.with_(cases={"bump": {"time": {"end": 0.5, "steps": 40}}})
 
-        Raises `ModelError` with all errors of the changed file. Changed design variables go with `run(design)` instead, which does not
-        read a file.
+        Files that the model has read are not read again; `hardpoint.read` does that. Raises `ModelError` with all errors of the changed
+        file. Changed design variables go with `run(design)` instead, which does not read a file.
         """
         return self._changed(together(by_name("changes", changes), sections))
 
@@ -222,7 +222,8 @@ class Model:
         if folder is None:
             native = _native.parse(text, name, files=dict(self._native.files))
         else:
-            native = _native.parse(text, name, folder=folder)
+            # Files that the model has read already are not read again.
+            native = _native.parse(text, name, files=dict(self._native.files), folder=folder)
         whole = _opened(native, folder, 5)
         if any(self._added):
             whole = Model(whole._native.with_variables(*self._added), None, self._added, folder)
@@ -239,28 +240,46 @@ class Model:
         """Model with other output times and laws in a case, and the index of the case in it."""
         if laws is not None and not isinstance(laws, Mapping):
             raise UsageError.saying(f"laws are named: `laws={{'travel': '10 * t'}}`, not {laws!r}")
-        document = self.to_dict()
         case = self.cases[index] if self.cases else None
-        place = document if case is None else document["cases"][case]
-        changes: dict[str, Any] = {}
+        # With the entries of included files and the mirror images.
+        composed = json.loads(self._native.composed())
+        target = json.loads(json.dumps({key: composed.get(key, {}) for key in ("drivers", "forces", "cases", "time")}))
+        moved = target if case is None else target["cases"][case]
         at = np.array(self._info["motions"][index]["times"], dtype=float)
         if times is not None:
             if not isinstance(times, Mapping):
                 at = _increasing(times)
                 times = {"at": at.tolist()}
-            changes["time"] = _instead(place.get("time"), times)
-        drivers = [driver["name"] for driver in self.drivers]
+            moved["time"] = times
         for name, law in (laws or {}).items():
-            section = "drivers" if name in drivers else "forces"
-            if section == "forces" and name not in document.get("forces", {}):
-                raise unknown("driver or force", name, [*drivers, *document.get("forces", {})])
+            section = "drivers" if name in target["drivers"] else "forces"
+            if name not in target[section]:
+                raise unknown("driver or force", name, [*target["drivers"], *target["forces"]])
             if case is None:
-                old = document.get(section, {}).get(name, {}).get("law")
-                changes.setdefault(section, {})[name] = {"law": _instead(old, _law(name, law, at))}
+                target[section][name]["law"] = _law(name, law, at)
             else:
-                changes.setdefault("laws", {})[name] = _instead(place.get("laws", {}).get(name), _law(name, law, at))
-        moved = self._changed(changes if case is None else {"cases": {case: changes}})
-        return moved, moved.cases.index(case) if case is not None else 0
+                moved.setdefault("laws", {})[name] = _law(name, law, at)
+        target = json.loads(written(target))
+        changes: dict[str, Any] = {}
+        document = self.to_dict()
+        if case is None:
+            if times is not None:
+                changes["time"] = _instead(document.get("time"), target["time"])
+            _set_laws(changes, document, target, list(laws or {}))
+        else:
+            changes["cases"] = {case: _change(document.get("cases", {}).get(case), target["cases"][case])}
+        found = self._changed(changes)
+        if any(key in document for key in ("include", "mirror")):
+            # Laws that a mirror copies from the changed ones remain those of this model.
+            made = json.loads(found._native.composed())
+            copied = _copied(made, target) if case is None else []
+            cases = _cases_of_their_own(made, target)
+            if copied or cases:
+                _set_laws(changes, document, target, copied)
+                of_text = document.get("cases", {})
+                changes.setdefault("cases", {}).update({name: _change(of_text.get(name), own) for name, own in cases.items()})
+                found = self._changed({key: value for key, value in changes.items() if value})
+        return found, found.cases.index(case) if case is not None else 0
 
     # Positions
 
@@ -287,9 +306,11 @@ class Model:
             >>> position = model.at(travel=12)
             >>> position["toe"], position.derivative("toe", "travel"), position.sensitivity("toe", "tie_rod_outer_z")
 
-        Loads are static. A force whose law changes over time needs a value in `forces`, N or N m. Raises `MotionStopped` where a
-        position cannot be reached; with `partial` its values are NaN, and `stops` has the reason. Names that are not Python's go into
-        a mapping: `model.at({"rack drive": 5})`.
+        Loads are static. A force whose law changes over time needs a value in `forces`: the force or moment, N or N m, along its
+        direction in the file; the resultant of a `wheel_force` with several components; and for a `tyre` the height of the road, in the
+        file's length unit. It is the value in the nominal design. Raises `MotionStopped` where a position cannot be reached; with
+        `partial` its values are NaN, and `stops` has the reason. Names that are not Python's go into a mapping:
+        `model.at({"rack drive": 5})`.
         """
         given = {name: number(f"force `{name}`", value) for name, value in by_name("forces", forces).items()}
         key = tuple(sorted(given.items()))
@@ -775,6 +796,46 @@ def written(sections: Mapping[str, Any]) -> str:
 def _instead(old: Any, new: Any) -> Any:
     """Change that replaces a table, instead of merging into it."""
     return {**dict.fromkeys(old), **new} if isinstance(old, Mapping) and isinstance(new, Mapping) else new
+
+
+def _change(old: Any, new: Any) -> Any:
+    """Change that makes an entry of the file another one."""
+    if not isinstance(old, Mapping) or not isinstance(new, Mapping):
+        return new
+    gone = {key: None for key in old if key not in new}
+    return {**gone, **{key: _change(old.get(key), value) for key, value in new.items() if key not in old or old[key] != value}}
+
+
+def _set_laws(changes: dict[str, Any], document: Mapping[str, Any], target: Mapping[str, Any], names: Iterable[str]) -> None:
+    """Adds laws of drivers and forces to changes of the file."""
+    for name in names:
+        section = "drivers" if name in target["drivers"] else "forces"
+        old = document.get(section, {}).get(name, {}).get("law")
+        # A force without a law has the factor 1.
+        changes.setdefault(section, {})[name] = {"law": _instead(old, target[section][name].get("law", 1))}
+
+
+def _copied(made: Mapping[str, Any], target: Mapping[str, Any]) -> list[str]:
+    """Drivers and forces whose laws are not those of the target."""
+    sections = ("drivers", "forces")
+    return [name for section in sections for name, entry in target[section].items() if made[section][name].get("law") != entry.get("law")]
+
+
+def _cases_of_their_own(made: Mapping[str, Any], target: Mapping[str, Any]) -> dict[str, Any]:
+    """Cases that are not those of the target; drivers and forces that only the made ones name move as in the target."""
+    found = {}
+    for name, own in target["cases"].items():
+        other = made["cases"][name]
+        if other == own:
+            continue
+        laws = dict(own.get("laws", {}))
+        for one in other.get("laws", {}):
+            if one not in laws and one in target["drivers"]:
+                laws[one] = target["drivers"][one]["law"] if own.get("other_drivers") == "as_in_model" else 0
+            elif one not in laws:
+                laws[one] = target["forces"][one].get("law", 1)
+        found[name] = {**own, "laws": laws} if laws else own
+    return found
 
 
 def _increasing(times: Any) -> np.ndarray:

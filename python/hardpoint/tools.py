@@ -52,7 +52,10 @@ def facts(*arguments: Any) -> dict[str, Any]:
         found = {}
     if done.returncode in (0, FELL_SHORT) and found:
         return found
-    raise _error(done, found.get("diagnostics", []))
+    of_cases = [case["result"] for case in found.get("cases", [])]
+    reported = [one for document in (found, *of_cases) for one in document.get("diagnostics", [])]
+    # Remarks on the model do not say why there is no result.
+    raise _error(done, [one for one in reported if one["severity"] == "error"] or reported)
 
 
 def _error(done: subprocess.CompletedProcess[str], found: list[dict]) -> HardpointError:

@@ -74,7 +74,7 @@ pub(crate) fn read(py: Python<'_>, path: &str) -> PyResult<Model> {
     Ok(Model::new(file))
 }
 
-/// Reads the text of a model; files that it names are taken from the given texts, or else from a folder.
+/// Reads the text of a model; files that it names are taken from the given texts, and all others from a folder.
 #[pyfunction]
 #[pyo3(signature = (text, name, files=None, folder=None, is_json=false))]
 pub(crate) fn parse(
@@ -92,9 +92,11 @@ pub(crate) fn parse(
     } else {
         text
     };
-    let file = py.detach(|| match files {
-        Some(files) => hardpoint_file::parse_with(text, name, &files),
-        None => hardpoint_file::parse_in(folder.map(Path::new), text, name),
+    let folder = folder.map(Path::new);
+    let file = py.detach(|| match (files, folder) {
+        (Some(files), Some(folder)) => hardpoint_file::parse_over(folder, &files, text, name),
+        (Some(files), None) => hardpoint_file::parse_with(text, name, &files),
+        (None, _) => hardpoint_file::parse_in(folder, text, name),
     });
     Ok(Model::new(file.map_err(|found| Failure::of_text(&found))?))
 }
@@ -157,13 +159,19 @@ impl Model {
         Ok(json(&table))
     }
 
+    /// Contents as JSON with those of included files and mirror images.
+    fn composed(&self) -> String {
+        json(&self.whole.composed())
+    }
+
     /// Text of the file with the entries of a nested table in JSON merged into it.
     fn merged(&self, changes: &str) -> PyResult<String> {
         Ok(written(self.whole.text(), changes)?)
     }
 
     /// Returns the model of a position at rest: its variables are those of this model, then the drivers. Forces whose
-    /// laws change over time have the given values, N or N m.
+    /// laws change over time have the given values in the nominal design: N or N m, and for a tyre the height of the
+    /// road in the file's unit.
     fn positioned(&self, forces: Vec<(String, f64)>) -> PyResult<Self> {
         let model = &self.whole.model;
         let known = model.given_forces();
@@ -171,7 +179,15 @@ impl Model {
         let mut values = Vec::new();
         for (force, value) in forces {
             let k = named("force with a law", &force, known.iter().map(name)).map_err(Failure::from)?;
-            values.push((known[k], value));
+            let (full, dimension) = model.at_unit_law(known[k]);
+            if full == 0.0 {
+                let why = format!(
+                    "force `{force}` is zero in the file, and its law has no effect; give it a magnitude other than zero"
+                );
+                return Err(Failure::Misunderstood(why).into());
+            }
+            // The law is a factor of the magnitude in the file.
+            values.push((known[k], value / self.whole.units.from_si(dimension, full)));
         }
         let is_given = |force: &ElementId| values.iter().any(|(other, _)| other == force);
         if let Some(force) = known.iter().find(|force| model.varies(**force) && !is_given(force)) {

@@ -1,5 +1,6 @@
 """Editing and building, plots, stored runs, loads by name, tables, and the command's jobs from Python."""
 
+import copy
 import json
 import math
 import pickle
@@ -400,3 +401,82 @@ def test_a_planar_template_has_points_with_two_coordinates(tmp_path):
     model = hardpoint.new(tmp_path / "p", "slider-crank", hardpoints=places, units="in")
     for name, place in places.items():
         assert model.hardpoints[name][:2] == pytest.approx([25.4 * x for x in place], rel=1e-12), name
+
+
+def cube_and_ball(folder):
+    corners = [[x, y, z] for x in (-10, 10) for y in (-10, 10) for z in (-10, 10)]
+    faces = [(1, 5, 7, 3), (5, 6, 8, 7), (6, 2, 4, 8), (2, 1, 3, 4), (3, 7, 8, 4), (1, 2, 6, 5)]
+    text = "".join(f"v {x} {y} {z}\n" for x, y, z in corners) + "".join("f {} {} {} {}\n".format(*face) for face in faces)
+    (folder / "cube.obj").write_text(text)
+    return hardpoint.Model.new(
+        "cube",
+        folder=folder,
+        units={"length": "mm", "angle": "deg"},
+        bodies={"ball": {}},
+        joints={"slide": {"type": "translational", "bodies": ["ground", "ball"], "at": [0, 0, 0], "axis": "x"}},
+        drivers={"motor": {"joint": "slide", "law": "10*t"}},
+        shapes={
+            "cube": {"body": "ground", "mesh": {"file": "cube.obj", "scale": 1.1}},
+            "ball": {"body": "ball", "sphere": [30, 0, 0], "radius": 5},
+        },
+        clearances={"c": {"between": ["cube", "ball"]}},
+        time={"end": 1, "steps": 4},
+    )
+
+
+def test_copies_of_a_model_have_its_shapes(tmp_path):
+    model = cube_and_ball(tmp_path)
+    run = model.run()
+    run.save(tmp_path / "run.npz")
+    for copied in (copy.deepcopy(model), pickle.loads(pickle.dumps(model)), hardpoint.load_run(tmp_path / "run.npz").model):
+        again = copied.run()
+        assert again.metric("c.min") == run.metric("c.min") == pytest.approx(14)
+        assert (again.values("c") == run.values("c")).all()
+        assert "cube.obj as a surface" not in again.page()
+
+
+@pytest.fixture(scope="module")
+def locking():
+    """A bar that reaches the end of the crank's way at half of the time, in a case of two."""
+    return hardpoint.Model.new(
+        "bars",
+        units={"length": "mm", "angle": "deg"},
+        planar="xy",
+        hardpoints={"A": [0, 0], "B": [50, 0], "C": [80, 0], "D": [80, 60]},
+        bodies={"ground": ["A", "D"], "crank": ["A", "B"], "coupler": ["B", "C"], "rocker": ["C", "D"]},
+        drivers={"motor": {"joint": "A", "law": "180*t"}},
+        shapes={"rod": {"body": "coupler", "capsule": ["B", "C"], "radius": 3}, "post": {"body": "ground", "sphere": [0, 300, 0], "radius": 5}},
+        clearances={"gap": {"between": ["rod", "post"]}},
+        time={"end": 1, "steps": 20},
+    )
+
+
+def test_motions_that_stop_have_a_message_in_every_job(locking, tmp_path):
+    with_cases = locking.with_(cases={"far": {"laws": {"motor": "180*t"}}, "near": {"laws": {"motor": "t"}}})
+    for model in (locking, with_cases):
+        jobs = (
+            lambda: model.clearance(),
+            lambda: model.compare(model),
+            lambda: model.envelope("rod", tmp_path / "rod.stl"),
+        )
+        for job in jobs:
+            with pytest.raises(hardpoint.MotionStopped, match="cannot move beyond") as raised:
+                job()
+            assert raised.value.code.startswith("HP04") and raised.value.diagnostics[0].severity == "error"
+
+
+def test_a_model_does_not_change_with_its_files(tmp_path):
+    (tmp_path / "law.csv").write_text("0,0\n0.5,10\n1,20\n")
+    model = hardpoint.Model.new(
+        "arm",
+        folder=tmp_path,
+        units={"length": "mm", "angle": "deg"},
+        bodies={"arm": {}},
+        joints={"hinge": {"type": "revolute", "bodies": ["ground", "arm"], "at": [0, 0, 0], "axis": "z"}},
+        drivers={"motor": {"joint": "hinge", "law": {"type": "table", "file": "law.csv", "ends": "natural"}}},
+        measures={"angle": {"type": "coordinate", "joint": "hinge"}},
+        time={"end": 1, "steps": 2},
+    )
+    (tmp_path / "law.csv").write_text("0,0\n0.5,50\n1,100\n")
+    for run in (model.run(), model.run(times=[0, 0.5, 1]), model.with_(description="arm").run()):
+        assert run.values("angle") == pytest.approx([0, 10, 20])

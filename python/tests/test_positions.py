@@ -131,11 +131,11 @@ def test_static_loads_of_a_position(press):
     """The torque at rest is that of a run with static loads there; the force that changes over time is given."""
     with pytest.raises(hardpoint.UsageError, match='force `work` changes over time.*forces={"work": 100.0}'):
         press.at(motor=30)
-    here = press.with_(loads="static").at(motor=30, forces={"work": 1.0})
+    here = press.with_(loads="static").at(motor=30, forces={"work": 300.0})
     still = press.with_(loads="static", forces={"work": {"law": 1}}).at(motor=30)
     assert here["torque"] == pytest.approx(still["torque"], rel=1e-9) and here["torque"] != 0
     by = 1e-3
-    there, back = (press.at(motor=30 + sign * by, forces={"work": 1.0})["torque"] for sign in (1, -1))
+    there, back = (press.at(motor=30 + sign * by, forces={"work": 300.0})["torque"] for sign in (1, -1))
     assert here.derivative("torque", "motor") == pytest.approx((there - back) / (2 * by), rel=1e-5)
 
 
@@ -172,3 +172,98 @@ def test_laws_hold_in_their_case_only(toe):
     assert len(toe.run(case="bump")) == 81
     assert "20 * t" in run.model.to_toml() and "20 * t" not in toe.to_toml()
     assert len(run.model.run(case="steer")) == len(toe.run(case="steer"))
+
+
+ARM = """name = "arm"
+units = { length = "mm", angle = "deg" }
+hardpoints = { A = [0, 300, 0], W = [0, 700, 0] }
+bodies.arm = {}
+joints.hinge = { type = "revolute", bodies = ["ground", "arm"], at = "A", axis = "x" }
+drivers.bump = { joint = "hinge", law = "5*t" }
+wheels.w = { body = "arm", centre = "W", toe = 0, camber = 0, radius = 300 }
+measures.torque = { type = "driver_force" }
+time = { end = 1, steps = 4 }
+forces.load = { LOAD, law = "t" }
+"""
+
+
+@pytest.mark.parametrize(
+    ("load", "value", "torque"),
+    [
+        ('type = "force", at = { body = "arm", at = "W" }, force = 250, along = "z"', 100.0, -40.0),
+        ('type = "force", at = { body = "arm", at = "W" }, force = -250, along = "z"', 100.0, -40.0),
+        ('type = "moment", body = "arm", moment = 20, about = "x"', 10.0, -10.0),
+        ('type = "wheel_force", wheel = "w", at = "centre", up = 250', 100.0, -40.0),
+        ('type = "wheel_force", wheel = "w", at = "centre", up = 3, outboard = 4', 100.0, -24.0),
+        ('type = "tyre", wheel = "w", stiffness = 200, height = 10', 5.0, -400.0),
+    ],
+)
+def test_forces_of_a_position_do_not_depend_on_their_size_in_the_file(load, value, torque):
+    """Forces are in N, moments in N m, and the road of a tyre in mm; the arm is 0.4 m long."""
+    model = hardpoint.parse(ARM.replace("LOAD", load))
+    assert model.at(bump=0, forces={"load": value})["torque"] == pytest.approx(torque, rel=1e-9)
+
+
+def test_a_force_of_zero_has_no_value_in_a_position():
+    load = 'type = "force", at = { body = "arm", at = "W" }, force = 0, along = "z"'
+    with pytest.raises(hardpoint.UsageError, match="`load` is zero in the file"):
+        hardpoint.parse(ARM.replace("LOAD", load)).at(bump=0, forces={"load": 100.0})
+
+
+CORNER = """name = "corner"
+units = { length = "mm", angle = "deg" }
+hardpoints = { left_A = [0, 300, 0], left_B = [0, 600, 0] }
+bodies.left_arm = {}
+joints.left_hinge = { type = "revolute", bodies = ["ground", "left_arm"], at = "left_A", axis = "x" }
+drivers.left_bump = { point = "left_wheel", along = "z", law = "20*sin(t)" }
+points.left_wheel = { body = "left_arm", at = "left_B" }
+forces.left_load = { type = "force", at = "left_wheel", force = 100, along = "z", law = "t" }
+measures.left_push = { type = "driver_force", driver = "left_bump" }
+time = { end = 1, steps = 4 }
+"""
+CASES = """
+[cases.left_up]
+laws = { left_bump = "30*t" }
+[cases.both]
+laws = { left_bump = "30*t" }
+[mirror]
+"""
+
+
+@pytest.fixture(scope="module")
+def axle(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("axle")
+    (folder / "corner.toml").write_text(CORNER)
+    (folder / "axle.toml").write_text('name = "axle"\ninclude = ["corner.toml"]\nmirror = {}\ntime = { end = 1, steps = 4 }\n')
+    return hardpoint.read(folder / "axle.toml")
+
+
+def ends(run, *names):
+    return [float(run.values(name)[-1]) for name in names]
+
+
+def test_laws_of_one_side_leave_the_other_side_alone(axle):
+    left, right = ends(axle.run(), "left_wheel.z", "right_wheel.z")
+    assert ends(axle.run(laws={"left_bump": "5*t"}), "left_wheel.z", "right_wheel.z") == pytest.approx([5.0, right])
+    assert ends(axle.run(laws={"right_bump": "5*t"}), "left_wheel.z", "right_wheel.z") == pytest.approx([left, 5.0])
+    assert ends(axle.run(laws={"left_bump": "5*t", "right_bump": 0}), "left_wheel.z", "right_wheel.z") == pytest.approx([5.0, 0.0])
+
+
+def test_laws_of_included_and_mirrored_forces_are_replaced(axle):
+    assert ends(axle.run(laws={"left_load": "5*t"}), "left_push", "right_push") == pytest.approx([-500.0, -100.0])
+    assert ends(axle.run(laws={"right_load": "5*t"}), "left_push", "right_push") == pytest.approx([-100.0, -500.0])
+    with pytest.raises(hardpoint.UsageError, match="did you mean `left_load`"):
+        axle.run(laws={"left_loda": "5*t"})
+
+
+def test_cases_of_the_mirror_have_other_times_and_laws():
+    model = hardpoint.parse(CORNER + CASES)
+    assert set(model.cases) == {"left_up", "right_up", "both"}
+    sides = ("left_wheel.z", "right_wheel.z")
+    own = {case: ends(model.run(case=case), *sides) for case in model.cases}
+    for case in model.cases:
+        assert ends(model.run(case=case, times=[0, 0.5, 1]), *sides) == pytest.approx(own[case])
+        run = model.run(case=case, laws={"left_bump": "5*t"})
+        assert ends(run, *sides) == pytest.approx([5.0, own[case][1]])
+        others = [other for other in model.cases if other != case]
+        assert all(ends(run.model.run(case=other), *sides) == pytest.approx(own[other]) for other in others)

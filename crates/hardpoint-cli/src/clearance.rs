@@ -102,7 +102,8 @@ fn clearance_in(
     });
     if options.common.json {
         session.print_json(&json!({
-            "name": file.model.name, "pairs": facts, "interrupted": is_interrupted, "diagnostics": stopped,
+            "name": file.model.name, "pairs": facts, "interrupted": is_interrupted,
+            "diagnostics": Vec::from_iter(stopped.as_ref()),
         }));
     } else {
         text::print(&format!("{}\n", text::bold(&file.model.name)));

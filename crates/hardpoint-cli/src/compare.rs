@@ -76,7 +76,7 @@ fn compare_in(
     let (analysis, of_other) = (session.plan(&file, formulation)?, session.plan(&other, formulation)?);
     let today = session.solve(&analysis);
     let exact = of_other.solve(Run::new().without_sensitivities().progress(|_| session.go_on()));
-    let mut outcome = Outcome::Done;
+    let (mut outcome, mut stops) = (Outcome::Done, Vec::new());
     for (file, solution) in [(&file, &today), (&other, &exact)] {
         if let Some(stop) = &solution.stop {
             let diagnostic = diagnose::stop(file, stop, solution.motion.len(), None);
@@ -84,13 +84,15 @@ fn compare_in(
                 session.fail(file, &[diagnostic]);
                 return Err(if session.interrupted() { Outcome::Interrupted } else { Outcome::Stopped });
             }
-            session.tell(file, &[diagnostic]);
+            session.tell(file, std::slice::from_ref(&diagnostic));
+            stops.push(diagnostic);
             outcome = Outcome::Stopped;
         }
     }
     let both =
         [SolvedModel { file: &file, solution: &today }, SolvedModel { file: &other, solution: &exact }];
-    let facts = CompareFacts::of(both);
+    let mut facts = CompareFacts::of(both);
+    facts.diagnostics.splice(0..0, stops);
     let names: Vec<&str> = facts.measures.iter().map(|c| c.measure.as_str()).collect();
     for name in &options.measure {
         named("common measure", name, names.iter().copied())

@@ -57,7 +57,10 @@ fn envelope_of(session: &Session, options: &args::Envelope) -> Result<Outcome, O
     write_alone(&to, |out| write_stl(corners, out)).map_err(|e| session.not_written(&e))?;
     let fact = EnvelopeFact::of(&file.model, file.units, &request, &found);
     if options.common.json {
-        session.print_json(&json!({ "name": file.model.name, "envelope": fact, "file": to }));
+        let stops = found.stops.iter().map(|found| diagnose::stop_of_envelope(&file, found));
+        session.print_json(&json!({
+            "name": file.model.name, "envelope": fact, "file": to, "diagnostics": Vec::from_iter(stops),
+        }));
     } else {
         text::print(&format!("{}\n", text::bold(&file.model.name)));
         fact.sentences().iter().for_each(|line| text::print(&format!("{line}\n")));

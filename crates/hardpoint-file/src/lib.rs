@@ -53,7 +53,7 @@ pub use language::{
 };
 pub use read::{
     Appearance, Form, MeasuredData, Mesh, MeshFrame, ModelFile, ReadError, TaskAim, TaskFile, TaskRegion,
-    parse, parse_in, parse_with, read, triangles,
+    parse, parse_in, parse_over, parse_with, read, triangles,
 };
 pub use values::{Diagnostic, Diagnostics, LARGEST_FILE, Severity, Source, Texts};
 pub use write::{Contents, at_keys, hardpoint_in, hardpoints_in, merged, placed, schema, with_keys};

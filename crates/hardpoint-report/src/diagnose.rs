@@ -17,6 +17,7 @@ use hardpoint::{
     },
 };
 use hardpoint_file::{Diagnostic, Diagnostics, ModelFile, Severity};
+use hardpoint_study::envelope::EnvelopeStop;
 
 use crate::assembly::GapFact;
 use crate::clearance::drivers;
@@ -100,6 +101,15 @@ pub fn stop_of_nominal(file: &ModelFile, stop: &Stop) -> Diagnostic {
         *help += &format!("; or end `[time]` before t = {at} s");
     }
     d
+}
+
+/// Diagnostic of a motion of an envelope that ended before its last position.
+pub fn stop_of_envelope(file: &ModelFile, EnvelopeStop { stop, end }: &EnvelopeStop) -> Diagnostic {
+    let left = match end {
+        Some(end) => format!("the envelope has the motion up to t = {} s", rounded(*end, 7)),
+        None => "the envelope has the positions that were reached".into(),
+    };
+    ended(file, stop, "", vec![left])
 }
 
 /// Diagnostic of a changed design whose motion ended before its last output time.

@@ -264,7 +264,7 @@ fn composed(
         model: Some(ModelText {
             file: file_name(file.file_name()),
             text: file.text().to_owned(),
-            files: file.texts.clone(),
+            files: file.page_texts(),
             case: file.case.clone(),
             shown: Some(detail),
         }),

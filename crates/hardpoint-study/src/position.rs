@@ -12,8 +12,8 @@ const TIMES: [f64; 3] = [PHASE_ENDS[0], PHASE_ENDS[1], 2.0 * PHASE_ENDS[1]];
 ///
 /// It has a further design variable for every driver, after those of the model and in the order of the drivers: the
 /// driver's coordinate, m or rad, counted from the design configuration. Derivatives by these variables are those by
-/// the drivers, with the design fixed. Loads are static, and `forces` replace laws of forces by their values, N
-/// or N m. There are no metrics.
+/// the drivers, with the design fixed. Loads are static, and `laws` replace laws of forces by constants. There are no
+/// metrics.
 ///
 /// ```
 /// # use hardpoint::{draft::Draft, law::Law, Analysis, Run, model::VariableId};
@@ -33,11 +33,11 @@ const TIMES: [f64; 3] = [PHASE_ENDS[0], PHASE_ENDS[1], 2.0 * PHASE_ENDS[1]];
 /// assert!((solution.measured.d(last, VariableId(0), 1)[0] - 2.0 * 0.3_f64.cos()).abs() < 1e-12);
 /// assert_eq!(solution.measured.value(last, 1)[1], 0.0);
 /// ```
-pub fn position_model(model: &Model, forces: &[(ElementId, f64)]) -> Model {
+pub fn position_model(model: &Model, laws: &[(ElementId, f64)]) -> Model {
     let drivers: Vec<DriverId> = (0..model.drivers.len()).map(DriverId).collect();
     let nominal: Vec<f64> = drivers.iter().map(|d| model.as_drawn(*d)).collect();
     let plain = Model { metrics: Vec::new(), ..model.clone() };
-    let mut position = posture_model(&plain, &nominal, forces, &drivers);
+    let mut position = posture_model(&plain, &nominal, laws, &drivers);
     let own = model.variables.len();
     for (k, driver) in model.drivers.iter().enumerate() {
         let is_taken = position.variables[..own].iter().any(|v| v.name == driver.name);

@@ -12,6 +12,6 @@ pub use planar::Plane;
 pub(crate) use entries::SECTIONS;
 #[cfg(test)]
 pub(crate) use include::INCLUDE_TABLE;
-pub(crate) use include::{Files, INCLUDE, IncludeError, parts_of, shifted, texts_of, whole};
+pub(crate) use include::{Files, INCLUDE, IncludeError, Part, parts_of, shifted, texts_of, whole};
 pub(crate) use mirror::{MIRROR, Origins, deduplicated, opposites, with_origin};
 pub(crate) use planar::PLANAR;

@@ -40,6 +40,9 @@ pub(super) const MESH_TABLE: Table = table! {
 /// Reads the triangles of a file.
 type Load = fn(&[u8], &mut Triangles) -> Result<(), String>;
 
+/// Ends the name of the triangles of a shape's file among the texts of a model.
+pub(crate) const SURFACE: &str = " as a surface";
+
 /// Kinds of files, by the endings of their names.
 const KINDS: [(&str, &str, Load); 4] = [
     ("stl", "an STL file", stl::load),
@@ -59,6 +62,36 @@ struct Triangles {
 }
 
 impl Triangles {
+    /// Vertices and triangles as text: their number, then the coordinates, then the corners.
+    fn text(&self) -> String {
+        let number = std::iter::once(self.vertices.len().to_string());
+        // The shortest text that is read back as the same number
+        let vertices = self.vertices.iter().flatten().map(|x| format!("{x:e}"));
+        let corners = self.triangles.iter().flatten().map(u32::to_string);
+        number.chain(vertices).chain(corners).collect::<Vec<_>>().join(" ")
+    }
+
+    /// Reads such a text; `None` if it is not valid.
+    fn of_text(text: &str) -> Option<Self> {
+        let mut words = text.split_ascii_whitespace();
+        let number: usize = words.next()?.parse().ok()?;
+        let places: Option<Vec<f64>> = words.by_ref().take(3 * number).map(|x| x.parse().ok()).collect();
+        let (vertices, rest) = places.as_ref()?.as_chunks();
+        let corner = |k: &str| k.parse().ok().filter(|k| (*k as usize) < vertices.len());
+        let corners: Option<Vec<u32>> = words.map(corner).collect();
+        let (triangles, left) = corners.as_ref()?.as_chunks();
+        let is_whole =
+            rest.is_empty() && left.is_empty() && vertices.len() == number && !triangles.is_empty();
+        let is_finite = vertices.iter().flatten().all(|x: &f64| x.is_finite());
+        let (vertices, triangles) = (vertices.to_vec(), triangles.to_vec());
+        (is_whole && is_finite).then(|| Self {
+            count: triangles.len(),
+            vertices,
+            triangles,
+            ..Self::default()
+        })
+    }
+
     /// Adds a triangle. Beyond the maximum number it is only counted; a degenerate one is left out.
     fn push(&mut self, corners: [[f64; 3]; 3]) -> Result<(), String> {
         self.count += 1;
@@ -201,8 +234,14 @@ pub(super) fn drawn(r: &mut Reader<'_>, said: &MeshDraft) -> Option<Mesh> {
     if cfg!(target_family = "wasm") || matches!(r.folder, Folder::Given(_)) {
         return None;
     }
+    let found = triangles_of(r.folder, &said.file.0);
+    placed(r, said, found)
+}
+
+/// Places the triangles of a file in the model, or reports why there are none.
+fn placed(r: &mut Reader<'_>, said: &MeshDraft, found: Result<Triangles, DataError>) -> Option<Mesh> {
     let (name, at) = &said.file;
-    let found = match triangles_of(r.folder, name) {
+    let found = match found {
         Ok(found) => found,
         Err(e) => {
             r.data_error(at.clone(), e);
@@ -252,10 +291,11 @@ pub(super) fn surface(
         }
         None => mesh(r, shape, f)?,
     };
-    if cfg!(target_family = "wasm") || matches!(r.folder, Folder::Given(_)) {
+    if cfg!(target_family = "wasm") {
         return Some((Vec::new(), Vec::new(), true));
     }
-    let Mesh { vertices, triangles, frame, file } = drawn(r, &said)?;
+    let found = surface_in_file(r, &said.file.0);
+    let Mesh { vertices, triangles, frame, file } = placed(r, &said, found)?;
     let open = open_edges(&triangles);
     if let Some([a, b]) = open.first().map(|edge| edge.map(|k| vertices[k as usize])) {
         // Six decimals of the model's unit: corners of STL files have no more digits.
@@ -279,6 +319,25 @@ pub(super) fn surface(
         d.help = Some("if it should be a solid, export it again with all edges closed".into());
     }
     Some((vertices, triangles, frame == MeshFrame::Body))
+}
+
+/// Triangles of a shape's file, in the file's own unit and axes. The text of a model is passed with these triangles, not
+/// with the file.
+fn surface_in_file(r: &mut Reader<'_>, name: &str) -> Result<Triangles, DataError> {
+    let known = format!("{name}{SURFACE}");
+    let found = match (r.folder.given(&known), r.folder) {
+        (Some(text), _) => Triangles::of_text(text).ok_or_else(|| not_passed(name)),
+        (None, Folder::Given(_)) => Err(not_passed(name)),
+        (None, Folder::None | Folder::On(_) | Folder::Over(..)) => triangles_of(r.folder, name),
+    }?;
+    r.texts.insert(known, found.text());
+    Ok(found)
+}
+
+/// A mesh that a text of a model without a folder does not have.
+fn not_passed(name: &str) -> DataError {
+    let message = format!("the mesh `{}` is not part of this model", shown(name));
+    DataError::unreadable(message, "read the model from its folder, where the mesh is")
 }
 
 /// Solid enclosed by the surface of a mass: the mesh under this key, or else that of its body.
@@ -339,21 +398,15 @@ fn solid_in_file(r: &mut Reader<'_>, said: &MeshDraft) -> Result<Solid, DataErro
     let (name, _) = &said.file;
     // The text of a model is passed with the mass properties of its meshes, not with the meshes.
     let known = format!("{name} as a solid");
-    let texts = match r.folder {
-        Folder::Given(texts) => Some(texts),
-        _ => None,
-    };
+    let given = r.folder.given(&known);
     // The engine of the page has no readers of meshes.
-    if texts.is_some() || cfg!(target_family = "wasm") {
-        let found = texts.and_then(|texts| texts.get(&known)).and_then(|text| {
+    if given.is_some() || matches!(r.folder, Folder::Given(_)) || cfg!(target_family = "wasm") {
+        let found = given.and_then(|text| {
             r.texts.insert(known.clone(), text.clone());
             let numbers: Option<Vec<f64>> = text.split_whitespace().map(|x| x.parse().ok()).collect();
             <[f64; 10]>::try_from(numbers?).ok()
         });
-        let [volume, x, y, z, second @ ..] = found.ok_or_else(|| {
-            let message = format!("the mesh `{}` is not part of this model", shown(name));
-            DataError::unreadable(message, "read the model from its folder, where the mesh is")
-        })?;
+        let [volume, x, y, z, second @ ..] = found.ok_or_else(|| not_passed(name))?;
         return Ok(Solid { volume, centre: Vec3::new(x, y, z), second, in_body: false });
     }
     let Triangles { vertices, triangles, .. } = triangles_of(r.folder, name)?;

@@ -39,7 +39,7 @@ pub use drawing::{Appearance, Form, Mesh, MeshFrame};
 pub use measured::MeasuredData;
 pub use mesh::triangles;
 pub use model_file::ModelFile;
-pub use parse::{ReadError, parse, parse_in, parse_with, read};
+pub use parse::{ReadError, parse, parse_in, parse_over, parse_with, read};
 
 pub use task::{TaskAim, TaskFile, TaskRegion};
 

@@ -16,6 +16,7 @@ use crate::values::{DataError, Diagnostic, Diagnostics, Places, Severity, Source
 use hardpoint_table::Units;
 
 use super::drawing::Appearance;
+use super::mesh::SURFACE;
 use super::sweep::{self, DesignList};
 
 /// Number of bodies without mass that are named.
@@ -34,7 +35,8 @@ pub struct ModelFile {
     pub drawing: Appearance,
     /// Warnings and notes of the reader, in the order of the text.
     pub remarks: Vec<Diagnostic>,
-    /// Texts of the files that the model names: tables of laws, target curves, lists of designs.
+    /// Texts of the files that the model names: tables of laws, target curves, lists of designs, and the triangles of
+    /// shapes.
     pub texts: Texts,
     /// Plane of a planar model.
     pub plane: Option<Plane>,
@@ -50,6 +52,13 @@ pub struct ModelFile {
 }
 
 impl ModelFile {
+    /// Texts of files for a page. The triangles of shapes are in its drawing, so that their texts are left out.
+    pub fn page_texts(&self) -> Texts {
+        let mut texts = self.texts.clone();
+        texts.retain(|name, _| !name.ends_with(SURFACE));
+        texts
+    }
+
     /// Returns the file with a single case as its motion.
     pub fn in_case(&self, case: CaseId) -> Self {
         let mut model = self.model.in_case(case);

@@ -5,10 +5,12 @@ use std::path::Path;
 
 use hardpoint::draft::{DraftError, Section};
 use hardpoint::model::Model;
+use serde::Deserialize;
+use toml::Spanned;
 use toml::de::DeTable;
 
 use crate::compose::{
-    Files, IncludeError, Plane, deduplicated, opposites, parts_of, shifted, texts_of, whole,
+    Files, IncludeError, Part, Plane, deduplicated, opposites, parts_of, shifted, texts_of, whole,
 };
 use crate::values::{
     Diagnostic, Diagnostics, Folder, LARGEST_FILE, Places, Reader, Severity, Source, Texts, in_order,
@@ -135,7 +137,8 @@ pub fn parse(text: &str, file_name: &str) -> Result<ModelFile, Diagnostics> {
     parsed(Folder::None, text, file_name)
 }
 
-/// Parses a text with the files that it names ([`ModelFile::texts`]); bodies have no meshes.
+/// Parses a text with the files that it names ([`ModelFile::texts`]); drawings have no
+/// meshes.
 ///
 /// # Errors
 /// As [`parse`].
@@ -149,6 +152,19 @@ pub fn parse_with(text: &str, file_name: &str, files: &Texts) -> Result<ModelFil
 /// As [`parse`].
 pub fn parse_in(folder: Option<&Path>, text: &str, file_name: &str) -> Result<ModelFile, Diagnostics> {
     parsed(folder.map_or(Folder::None, Folder::On), text, file_name)
+}
+
+/// Parses a text with the files that it names ([`ModelFile::texts`]); all others are read from `folder`.
+///
+/// # Errors
+/// As [`parse`].
+pub fn parse_over(
+    folder: &Path,
+    files: &Texts,
+    text: &str,
+    file_name: &str,
+) -> Result<ModelFile, Diagnostics> {
+    parsed(Folder::Over(folder, files), text, file_name)
 }
 
 pub(crate) fn parsed(folder: Folder<'_>, text: &str, file_name: &str) -> Result<ModelFile, Diagnostics> {
@@ -172,17 +188,7 @@ pub(crate) fn parsed(folder: Folder<'_>, text: &str, file_name: &str) -> Result<
         let at = at.start + start..at.end + start;
         list.push(error.diagnostic(&source, Some(at)));
     }
-    let mut tables = Vec::new();
-    for file in 0..=parts.len() {
-        let range = source.range(file);
-        let (document, errors) = DeTable::parse_recoverable(&source.text[range.clone()]);
-        list.extend(syntax_errors(&source, &errors, &range));
-        let mut table = document.into_inner();
-        if file > 0 {
-            shifted(&mut table, range.start);
-        }
-        tables.push((file.checked_sub(1).map_or(String::new(), |k| parts[k].name.clone()), table));
-    }
+    let tables = tables_of(&source, &parts, &mut list);
     if !list.is_empty() {
         drop(tables);
         return Err(Diagnostics::new(source, list));
@@ -242,6 +248,40 @@ pub(crate) fn parsed(folder: Folder<'_>, text: &str, file_name: &str) -> Result<
         }
         _ => Err(Diagnostics::new(source, found)),
     }
+}
+
+impl ModelFile {
+    /// Contents of the model with those of its included files and its mirror images: the table that was read.
+    pub fn composed(&self) -> toml::Table {
+        let folder = Folder::Given(&self.texts);
+        let (parts, _) = parts_of(folder, self.text());
+        let tables = tables_of(&self.source, &parts, &mut Vec::new());
+        let numbers = opposites(tables.iter().map(|file| &file.1));
+        let sizes = (0..tables.len()).map(|file| self.source.range(file).len() as u64).collect();
+        let files = Files { tables, numbers: &numbers, sizes };
+        let (whole, _) = whole(&mut Reader::new(&self.source, folder), &MODEL, files);
+        let whole = toml::de::Deserializer::from(Spanned::new(0..0, whole.table));
+        toml::Table::deserialize(whole).expect("the file has been read")
+    }
+}
+
+/// Tables of a model file and its included files, with their names.
+fn tables_of<'s>(
+    source: &'s Source,
+    parts: &[Part],
+    errors: &mut Vec<Diagnostic>,
+) -> Vec<(String, DeTable<'s>)> {
+    let table = |file: usize| {
+        let range = source.range(file);
+        let (document, found) = DeTable::parse_recoverable(&source.text[range.clone()]);
+        errors.extend(syntax_errors(source, &found, &range));
+        let mut table = document.into_inner();
+        if file > 0 {
+            shifted(&mut table, range.start);
+        }
+        (file.checked_sub(1).map_or(String::new(), |k| parts[k].name.clone()), table)
+    };
+    (0..=parts.len()).map(table).collect()
 }
 
 /// Reports the syntax errors of a TOML file.

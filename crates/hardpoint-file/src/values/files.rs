@@ -23,6 +23,18 @@ pub(crate) enum Folder<'f> {
     On(&'f Path),
     /// Files given with the text; for meshes their mass properties.
     Given(&'f Texts),
+    /// Files given with the text, and all others in this folder or below it.
+    Over(&'f Path, &'f Texts),
+}
+
+impl<'f> Folder<'f> {
+    /// Given text by its name.
+    pub fn given(self, name: &str) -> Option<&'f String> {
+        match self {
+            Self::Given(texts) | Self::Over(_, texts) => texts.get(name),
+            Self::None | Self::On(_) => None,
+        }
+    }
 }
 
 /// Error in a data file.
@@ -96,15 +108,15 @@ pub(crate) fn bytes_of(folder: Folder<'_>, name: &str, wanted: &Wanted<'_>) -> R
     let path = inside(name, wanted)?;
     let known = name;
     let name = shown(name);
+    if let Some(text) = folder.given(known) {
+        return Ok(text.clone().into_bytes());
+    }
     let folder = match folder {
-        Folder::On(folder) => folder,
-        Folder::Given(texts) => match texts.get(known) {
-            Some(text) => return Ok(text.clone().into_bytes()),
-            None => {
-                let message = format!("the file `{name}` is not part of this model");
-                return Err(DataError::unreadable(message, wanted.without_folder));
-            }
-        },
+        Folder::On(folder) | Folder::Over(folder, _) => folder,
+        Folder::Given(_) => {
+            let message = format!("the file `{name}` is not part of this model");
+            return Err(DataError::unreadable(message, wanted.without_folder));
+        }
         Folder::None => {
             let message = format!("the file `{name}` cannot be read: this model is a text without a folder");
             return Err(DataError::unreadable(message, wanted.without_folder));

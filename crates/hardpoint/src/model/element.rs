@@ -881,6 +881,36 @@ impl Model {
         (0..self.elements.len()).filter(has_law).map(ElementId).collect()
     }
 
+    /// Magnitude that the law of a given force multiplies, in the nominal design, and its dimension: the force or moment,
+    /// the resultant of a wheel force with several components, and the height of the road of a tyre. It is zero for an
+    /// element without a law.
+    pub fn at_unit_law(&self, force: ElementId) -> (f64, Dimension) {
+        let number = |n: Option<NumberId>| n.map_or(0.0, |n| self.numbers[n.0].value);
+        match &self.elements[force.0].kind {
+            ElementKind::PointForce(it) => (number(Some(it.force.0)), Dimension::FORCE),
+            ElementKind::BodyMoment(it) => (number(Some(it.moment.0)), Dimension::MOMENT),
+            ElementKind::WheelForce(it) => {
+                let [x, y, z] = [it.outboard, it.forward, it.up].map(|n| number(n.map(|n| n.0)));
+                match self.force_dimension(force) {
+                    Dimension::MOMENT => (number(it.about_up.map(|n| n.0)).abs(), Dimension::MOMENT),
+                    dimension => (Vec3::new(x, y, z).norm(), dimension),
+                }
+            }
+            ElementKind::Tyre(it) => (number(it.height.map(|n| n.0)), Dimension::LENGTH),
+            ElementKind::Rigid(_)
+            | ElementKind::Bar(_)
+            | ElementKind::Block(_)
+            | ElementKind::Mesh(_)
+            | ElementKind::Spring(_)
+            | ElementKind::JointSpring(_)
+            | ElementKind::TorsionSpring(_)
+            | ElementKind::Friction(_)
+            | ElementKind::SlideFriction(_)
+            | ElementKind::Bushing(_)
+            | ElementKind::ElasticJoint(_) => (0.0, Dimension::FORCE),
+        }
+    }
+
     /// True if the law of a given force has different values at the output times.
     pub fn varies(&self, force: ElementId) -> bool {
         self.elements[force.0].kind.law(self).is_some_and(|law| self.changes(law))
