@@ -8,7 +8,7 @@ use hardpoint::Analysis;
 use hardpoint::model::Model;
 use hardpoint::motion::StopKind;
 use hardpoint::run::{ClearanceProof, Clearances, MinimumPlace, PairClearance};
-use hardpoint_file::parse;
+use hardpoint_file::{parse, parse_with};
 use serde_json::Value;
 
 use crate::proof::numbers;
@@ -391,6 +391,34 @@ time = { end = 1, steps = 6 }
         }
     }
     text
+}
+
+/// A text without a folder has the triangles of its shapes, with their scale and mirror; a page has not.
+#[test]
+fn the_text_of_a_model_is_passed_with_the_triangles_of_its_shapes() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("cube.obj"), CUBE).unwrap();
+    let data: Value = serde_json::from_str(include_str!("cube.json")).unwrap();
+    let case = data["cases"].as_object().unwrap().values().next().unwrap();
+    let mesh = "mesh = { file = \"cube.obj\", scale = 0.7, mirror = \"y\" }";
+    let text = cube(&case["axis"], &case["design"], mesh);
+    let path = folder.path().join("cube.toml");
+    std::fs::write(&path, &text).unwrap();
+    let file = hardpoint_file::read(&path).unwrap_or_else(|e| panic!("{e}"));
+    let passed = parse_with(&text, "cube.toml", &file.texts).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(passed.texts, file.texts);
+    let distances = |model: &Model| {
+        let found = Analysis::new(model).unwrap().clearances(&[]);
+        pair(model, &found, "gap").curve.iter().map(|at| at.distance).collect::<Vec<_>>()
+    };
+    assert_eq!(distances(&passed.model), distances(&file.model));
+    let found = parse_with(&text, "cube.toml", &file.page_texts()).unwrap_err();
+    assert!(found.to_string().contains("the mesh `cube.obj` is not part of this model"), "{found}");
+    let (name, triangles) = file.texts.first_key_value().unwrap();
+    for wrong in [format!("{triangles} 99999 0 1"), format!("{triangles} 1"), "2 0 0".into(), String::new()] {
+        let wrong = [(name.clone(), wrong)].into_iter().collect();
+        assert!(parse_with(&text, "cube.toml", &wrong).is_err());
+    }
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use hardpoint::Analysis;
 use hardpoint::model::{BodyId, Model};
-use hardpoint_file::{ModelFile, parse, parse_with, read};
+use hardpoint_file::{ModelFile, parse, parse_in, parse_over, parse_with, read};
 
 use crate::diagnostics::diagnosed;
 
@@ -280,4 +280,36 @@ fn a_model_saved_in_another_folder_reads_the_same_files() {
     assert_eq!(sent.text_for(text, None, &other).unwrap(), text);
     let found = sent.text_for(text, None, models).unwrap_err();
     assert!(found.list()[0].message.contains("it reads `corner.toml`"), "{found}");
+}
+
+/// The composed table has the entries of included files and mirror images, and so have texts without a folder; files
+/// that are given are not read from the folder.
+#[test]
+fn the_composed_table_has_included_and_mirrored_entries() {
+    let corner = "name = \"corner\"\nunits = { length = \"mm\", angle = \"deg\" }\n\
+        hardpoints = { left_A = [0, 300, 0], left_B = [0, 600, 0] }\nbodies.left_arm = {}\n\
+        joints.left_hinge = { type = \"revolute\", bodies = [\"ground\", \"left_arm\"], at = \"left_A\", axis = \"x\" }\n\
+        drivers.left_bump = { joint = \"left_hinge\", law = { type = \"table\", file = \"law.csv\", ends = \"natural\" } }\n\
+        forces.left_load = { type = \"force\", at = { body = \"left_arm\", at = \"left_B\" }, force = 100, along = \"z\", law = \"t\" }\n\
+        time = { end = 1, steps = 4 }\n";
+    let text = "name = \"axle\"\ninclude = [\"corner.toml\"]\nmirror = {}\ntime = { end = 1, steps = 4 }\n\
+        drivers.right_bump = { law = \"5*t\" }\n[cases.left_up]\nlaws = { left_bump = \"30*t\" }\n";
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    write("corner.toml", corner);
+    write("law.csv", "0,0\n0.5,10\n1,20\n");
+    write("axle.toml", text);
+    let axle = read(&folder.path().join("axle.toml")).unwrap_or_else(|e| panic!("{e}"));
+    let composed = axle.composed();
+    assert_eq!(composed["drivers"]["right_bump"]["law"].as_str(), Some("5*t"));
+    assert_eq!(composed["drivers"]["left_bump"]["law"]["file"].as_str(), Some("law.csv"));
+    assert_eq!(composed["forces"]["right_load"]["law"].as_str(), Some("t"));
+    assert_eq!(composed["cases"]["right_up"]["laws"]["right_bump"].as_str(), Some("30*t"));
+    let passed = parse_with(text, "axle.toml", &axle.texts).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(passed.composed(), composed);
+    std::fs::remove_file(folder.path().join("law.csv")).unwrap();
+    std::fs::remove_file(folder.path().join("corner.toml")).unwrap();
+    let again = parse_over(folder.path(), &axle.texts, text, "axle.toml").unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(again.texts, axle.texts);
+    assert!(parse_in(Some(folder.path()), text, "axle.toml").is_err());
 }
