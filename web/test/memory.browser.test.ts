@@ -7,6 +7,17 @@ import { slide } from './person'
 
 const { cases, models } = inject('samples')
 
+/** A four-bar that locks before its crank has turned once, unless B is nearer to A. */
+const LOCKS = `name = "locks"
+units = { length = "mm", angle = "deg" }
+planar = "xy"
+hardpoints = { A = [0, 0], B = [62, 0], C = [120, 80], D = [120, 0] }
+bodies = { ground = ["A", "D"], crank = ["A", "B"], coupler = ["B", "C"], rocker = ["C", "D"] }
+drivers.motor = { joint = "A", law = "360*t" }
+design.B = { move = "B", along = "x" }
+measures.r = { type = "coordinate", joint = "D" }
+`
+
 /** With the view, and without it where the camera does not matter. */
 let browser: Browser
 let flat: Browser
@@ -150,6 +161,32 @@ describe('work on a design', () => {
     const other = await visit(flat, page.url())
     await expect.poll(() => title(other.page)).toContain('steer')
     await other.page.context().close()
+  })
+
+  test('whose motion is longer than that of the original says so, and is shown whole on request', async () => {
+    await open('slider_crank')
+    await page.getByTestId('open-model').click()
+    await page.getByTestId('model-text').click()
+    await page.keyboard.press('Control+a')
+    await page.keyboard.insertText(LOCKS)
+    await expect.poll(() => page.getByTestId('title').innerText()).toContain('locks')
+    await ready(page)
+    const banner = page.getByTestId('banner')
+    expect(await banner.innerText()).toContain('This motion is incomplete.')
+    await page.getByTestId('tab-variables').click()
+    const change = page.getByTestId('variable-B_x').getByTestId('change-value')
+    await change.fill('-10')
+    await change.press('Enter')
+    await settled(page)
+    expect(await banner.innerText()).toMatch(/^Only a part of this motion is shown.*up to 0\.4\d* s/)
+    // The rocker turns to 69.6 deg after the time at which the original locks.
+    const card = () => page.getByTestId('card-r').innerText()
+    expect(await card()).not.toContain('69.6')
+    await page.getByTestId('whole-motion').click()
+    await expect.poll(() => banner.isVisible()).toBe(false)
+    await expect.poll(card).toContain('69.6')
+    await page.getByTestId('undo').click()
+    await expect.poll(() => banner.isVisible()).toBe(true)
   })
 
   test('is not left without a warning where its text has errors, and its export is the last valid text', async () => {
