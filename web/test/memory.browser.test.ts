@@ -174,7 +174,7 @@ describe('work on a design', () => {
     const banner = page.getByTestId('banner')
     expect(await banner.innerText()).toContain('This motion is incomplete.')
     await page.getByTestId('tab-variables').click()
-    const change = page.getByTestId('variable-B_x').getByTestId('change-value')
+    const change = page.getByTestId('variable-B').getByTestId('change-value')
     await change.fill('-10')
     await change.press('Enter')
     await settled(page)

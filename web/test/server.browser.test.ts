@@ -212,7 +212,7 @@ test('a text with errors is saved after a second confirmation only, and as it is
   await page.evaluate(() => setTimeout(() => location.reload()))
   await expect.poll(() => asked).toEqual(['beforeunload'])
   // What is typed after the question is saved as well.
-  await page.getByTestId('model-text').click()
+  await page.getByTestId('model-text').focus()
   await type('# unfinished')
   await page.getByRole('button', { name: 'Save anyway' }).click()
   await page.getByText('Saved').waitFor()

@@ -881,9 +881,9 @@ impl Model {
         (0..self.elements.len()).filter(has_law).map(ElementId).collect()
     }
 
-    /// Magnitude that the law of a given force multiplies, in the nominal design, and its dimension: the force or moment,
-    /// the resultant of a wheel force with several components, and the height of the road of a tyre. It is zero for an
-    /// element without a law.
+    /// Magnitude that the law of a given force multiplies, in the nominal design, and its dimension: the force or
+    /// moment, the resultant of a wheel force with several components, and the height of the road of a tyre. It is zero
+    /// for an element without a law.
     pub fn at_unit_law(&self, force: ElementId) -> (f64, Dimension) {
         let number = |n: Option<NumberId>| n.map_or(0.0, |n| self.numbers[n.0].value);
         match &self.elements[force.0].kind {

@@ -17,7 +17,7 @@ use crate::motion::mechanism::driver_units;
 
 use super::analysis::Analysis;
 use super::curve::JUST_BEFORE;
-use super::metric::{is_among, unresolved_times, window_times};
+use super::metric::{is_among, unresolved_extrema, unresolved_times, window_times};
 use super::needed::{MetricUse, NeededResults};
 use super::request::Progress;
 use super::solution::Solution;
@@ -36,8 +36,10 @@ const LAW_RESOLVED: f64 = 1e-8;
 const PLACES: [f64; 3] = [0.25, 0.5, 0.75];
 /// Maximum number of bisections of an interval.
 const MOST_HALVINGS: u32 = 40;
-/// Maximum number of passes; each adds times nearer to those of the metrics.
-const MOST_PASSES: usize = 8;
+/// Maximum number of passes; each adds times nearer to those of the metrics ...
+const MOST_PASSES: usize = 4;
+/// ... and of passes that locate sharp extrema without rates.
+const MOST_FOR_EXTREMA: usize = 8;
 /// Memory for the motion between output times.
 const BYTES: usize = 128 << 20;
 
@@ -172,13 +174,15 @@ impl Analysis<'_> {
             passes += usize::from(add.is_empty());
             let is_located = |m: &&Metric| located.as_ref().is_some_and(|located| is_among(located, m));
             let metrics = model.metrics.iter().filter(|m| is_between_outputs(m, &model.times));
-            add.extend(
-                metrics
-                    .filter(|m| !is_located(m))
-                    .flat_map(|m| unresolved_times(now, m, found.is_some() || is_exact(model, m))),
-            );
+            for metric in metrics.filter(|m| !is_located(m)) {
+                if passes < MOST_PASSES {
+                    let finer = found.is_some() || is_exact(model, metric);
+                    add.extend(unresolved_times(now, metric, finer));
+                }
+                add.extend(unresolved_extrema(now, metric));
+            }
             keep_apart(&mut add, &times);
-            if add.is_empty() || passes == MOST_PASSES {
+            if add.is_empty() || passes == MOST_FOR_EXTREMA {
                 break;
             }
             times.extend(add);

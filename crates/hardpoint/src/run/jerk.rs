@@ -26,8 +26,8 @@ impl Jerks {
 impl Analysis<'_> {
     /// Jerk of all bodies over the motion of the design with variable k at `design[k]`.
     ///
-    /// At a jump of the third derivative of a driver's law, the one-sided value of the law itself is used. An equilibrium
-    /// is at rest at each time: its jerks are zero, as are its velocities.
+    /// At a jump of the third derivative of a driver's law, the one-sided value of the law itself is used. An
+    /// equilibrium is at rest at each time: its jerks are zero, as are its velocities.
     pub fn jerks(&self, design: &[f64]) -> Jerks {
         let design = self.design(design);
         self.jerks_in(&design, usize::MAX, &mut |_| ())

@@ -127,6 +127,7 @@ fn metric_value(model: &Model, solution: &Solution, metric: &Metric) -> MetricVa
         Reduction::Change | Reduction::RmsAtPoints(_) | Reduction::Value(_) | Reduction::Slope(_) => false,
     };
     let resolved = !hidden
+        && unresolved_extrema(solution_of(solution), metric).is_empty()
         && (solution.between.is_some() || is_located)
         && unresolved_times(solution_of(solution), metric, true).is_empty();
     let error = if resolved { None } else { interpolation_error(metric, &y, &x, value, time) };
@@ -208,10 +209,9 @@ fn signs(take: &Reduction) -> &'static [f64] {
 pub(crate) fn unresolved_times(solution: &Solution, metric: &Metric, finer: bool) -> Vec<f64> {
     let Some((y, x)) = curves_at(solution, metric) else { return Vec::new() };
     let range = range_of(&y);
-    let signs = signs(&metric.take);
-    let around_vertices = signs.iter().flat_map(|sign| unresolved_vertices(metric, &y, &x, *sign, range));
     let located: Vec<_> = match &metric.take {
         Reduction::Greatest | Reduction::Least | Reduction::Range => {
+            let signs = signs(&metric.take);
             signs.iter().flat_map(|sign| far_out_times(metric, &y, &x, *sign, finer)).collect()
         }
         // It is taken at output times.
@@ -248,7 +248,16 @@ pub(crate) fn unresolved_times(solution: &Solution, metric: &Metric, finer: bool
     let ends: Vec<f64> = ends.map(|(k, t)| y.within(k, t)).collect();
     let with_slope = located.iter().filter(|t| is_at_abscissa || ends.contains(t));
     let beside = with_slope.flat_map(|t| beside(metric, &y, *t)).collect::<Vec<_>>();
-    located.into_iter().filter(unresolved).chain(beside).chain(around_vertices).collect()
+    located.into_iter().filter(unresolved).chain(beside).collect()
+}
+
+/// Times that an extremum of a curve without rates needs in addition: at and beside those whose parabolas are
+/// inaccurate.
+pub(crate) fn unresolved_extrema(solution: &Solution, metric: &Metric) -> Vec<f64> {
+    let signs = signs(&metric.take);
+    let Some((y, x)) = curves_at(solution, metric).filter(|_| !signs.is_empty()) else { return Vec::new() };
+    let range = range_of(&y);
+    signs.iter().flat_map(|sign| unresolved_vertices(metric, &y, &x, *sign, range)).collect()
 }
 
 /// Part of the range of a curve without rates within which all of its extrema are located: in an optimum several are
