@@ -321,8 +321,8 @@ pub(super) fn surface(
     Some((vertices, triangles, frame == MeshFrame::Body))
 }
 
-/// Triangles of a shape's file, in the file's own unit and axes. The text of a model is passed with these triangles, not
-/// with the file.
+/// Triangles of a shape's file, in the file's own unit and axes. The text of a model is passed with these triangles,
+/// not with the file.
 fn surface_in_file(r: &mut Reader<'_>, name: &str) -> Result<Triangles, DataError> {
     let known = format!("{name}{SURFACE}");
     let found = match (r.folder.given(&known), r.folder) {

@@ -440,6 +440,13 @@ impl<T: Real> SampledCurve<'_, T> {
     /// neighbours, or through the squares of their distances from a kink.
     fn vertex(&self, k: usize, sign: f64) -> Option<Vertex<T>> {
         let around = self.around(k)?;
+        // Nearer to a neighbour it is next to that one, unless there is no parabola.
+        let y = |k: usize| sign * self.values[k][0].value();
+        let is_lower = [k - 1, k + 1].map(|other| y(other) <= y(k));
+        let is_outer = |side: usize, other: usize| is_lower[side] || self.around(other).is_none();
+        if !(is_outer(0, k - 1) && is_outer(1, k + 1)) {
+            return None;
+        }
         let [a, b, c] = around;
         let fold = self.fold_around(k);
         let sign = fold.map_or(sign, |fold| sign * fold.side);
@@ -457,10 +464,8 @@ impl<T: Real> SampledCurve<'_, T> {
         }
         let t = of(0.5) * (of(a + b) - d / e);
         let time = t.value();
-        // Nearer to a neighbour it is next to that one, unless there is no parabola.
-        let is_lower = |other: T| sign * other.value() <= sign * q.value();
-        let is_before = is_lower(p) || (a <= time && time <= b && self.around(k - 1).is_none());
-        let is_after = is_lower(r) || (b <= time && time <= c && self.around(k + 1).is_none());
+        let is_before = is_lower[0] || (a <= time && time <= b);
+        let is_after = is_lower[1] || (b <= time && time <= c);
         if !(is_before && is_after) {
             return None;
         }

@@ -354,7 +354,9 @@ fn far_out_times(
         return Vec::new();
     }
     let Some((value, time)) = extreme(metric, y, x, sign) else { return Vec::new() };
-    let is_vertex = vertices(metric, y, x, sign).any(|vertex| vertex.time == time);
+    let is_vertex = y.orders == 1
+        && !y.times.contains(&time)
+        && vertices(metric, y, x, sign).any(|vertex| vertex.time == time);
     let mut times: Vec<f64> = (!is_vertex).then_some(time).into_iter().collect();
     if finer {
         let far_out = sign * value - ALIKE * range_of(y);
