@@ -301,7 +301,7 @@ fn unresolved_vertices(
         let by = BESIDE_VERTEX * (last - first);
         let t = if (vertex.time - middle).abs() < 0.5 * by { middle } else { vertex.time };
         let is_coarse = !vertex.errors.is_some_and(|errors| errors.iter().sum::<f64>() <= COARSE * range);
-        let halves = is_coarse.then(|| [0.5 * (first + middle), 0.5 * (middle + last)]);
+        let halves = is_coarse.then_some([0.5 * (first + middle), 0.5 * (middle + last)]);
         [t - by, t, t + by].into_iter().chain(halves.into_iter().flatten())
     };
     vertices(metric, y, x, sign)
