@@ -243,7 +243,7 @@ class Model:
         case = self.cases[index] if self.cases else None
         # With the entries of included files and the mirror images.
         composed = json.loads(self._native.composed())
-        target = json.loads(json.dumps({key: composed.get(key, {}) for key in ("drivers", "forces", "cases", "time")}))
+        target = {key: composed.get(key, {}) for key in ("drivers", "forces", "cases", "time")}
         moved = target if case is None else target["cases"][case]
         at = np.array(self._info["motions"][index]["times"], dtype=float)
         if times is not None:

@@ -397,8 +397,7 @@ export class State {
 
   /**
    * The design with these changes was solved: it is the present one, and `isShort` if the requested one was not
-   * reached.
-   * Later changes may be on their way already.
+   * reached. Later changes may be on their way already.
    */
   solved(
     design: Design | undefined,

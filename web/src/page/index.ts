@@ -194,7 +194,8 @@ function banner(state: State): HTMLElement {
     const cutOff =
       `Curves and values of this design are shown up to ${end}, where the motion of the original ends; ` +
       'metrics and checks are of its whole motion. '
-    const message = [state.outdated, status.message, isCutOff ? cutOff : ''].filter(Boolean).join(': ')
+    const stops = [state.outdated, status.message].filter(Boolean).join(': ')
+    const message = [stops, isCutOff ? cutOff : ''].filter(Boolean).join(' ')
     if (message === shown) return
     setText(heading, status.complete ? 'Only a part of this motion is shown. ' : 'This motion is incomplete. ')
     words.replaceChildren(...prose(message))

@@ -321,17 +321,15 @@ export class Studio {
   /** Shows another text. */
   async replace(text: string, label: string): Promise<void> {
     if (text === this.#text && !this.#unwritten) return this.#editor?.setText(text)
+    await this.#take(text, label)
+  }
+
+  /** Makes a text that of the original design, as another step of the history. */
+  async #take(text: string, label: string): Promise<void> {
     this.history.go({ text, settings: [], label })
     const solved = this.#openModel({ ...this.model, text }, [])
     this.#setText(text)
     await solved
-  }
-
-  /** Makes the present design the original one. */
-  async #adopt(label: string): Promise<void> {
-    const text = await this.#currentText()
-    this.history.go({ text, settings: [], label })
-    await this.#openModel({ ...this.model, text }, [])
   }
 
   /** Changes the text of the original design; the changes made since stay. */
@@ -438,7 +436,7 @@ export class Studio {
       this.#recordStep()
       this.#scheduleUpdate()
     })
-    state.showWholeMotion = () => void this.#adopt('whole motion')
+    state.showWholeMotion = () => void this.#currentText().then((text) => this.#take(text, 'whole motion'))
     state.onChoice(() => {
       this.#saveSoon()
       this.#showPoints()

@@ -137,8 +137,7 @@ pub fn parse(text: &str, file_name: &str) -> Result<ModelFile, Diagnostics> {
     parsed(Folder::None, text, file_name)
 }
 
-/// Parses a text with the files that it names ([`ModelFile::texts`]); drawings have no
-/// meshes.
+/// Parses a text with the files that it names ([`ModelFile::texts`]); drawings have no meshes.
 ///
 /// # Errors
 /// As [`parse`].

@@ -255,7 +255,11 @@ pub(crate) fn unresolved_times(solution: &Solution, metric: &Metric, finer: bool
 /// inaccurate.
 pub(crate) fn unresolved_extrema(solution: &Solution, metric: &Metric) -> Vec<f64> {
     let signs = signs(&metric.take);
-    let Some((y, x)) = curves_at(solution, metric).filter(|_| !signs.is_empty()) else { return Vec::new() };
+    let has_rates = column(&solution.measured, metric.of).is_some_and(|(_, orders, _)| orders > 1);
+    if signs.is_empty() || has_rates {
+        return Vec::new();
+    }
+    let Some((y, x)) = curves_at(solution, metric) else { return Vec::new() };
     let range = range_of(&y);
     signs.iter().flat_map(|sign| unresolved_vertices(metric, &y, &x, *sign, range)).collect()
 }
