@@ -594,6 +594,7 @@ forces.swing = { type = "force", at = { body = "crank", at = "B" }, force = 100,
 forces.side = { type = "force", at = { body = "crank", at = "B" }, force = "e", along = "y" }
 measures.size = { type = "reaction", joint = "A", part = "radial" }
 metrics.least = { of = "size", take = "min" }
+metrics.span = { of = "size", take = "range" }
 time = { end = 1, steps = 10 }
 "#;
     for least in [10.0, 0.1, 0.001] {
@@ -606,6 +607,16 @@ time = { end = 1, steps = 10 }
             assert!((found.value.unwrap() - least).abs() <= 1e-6 * least, "{name}");
             assert!((found.d[0] - 1.0).abs() <= 1e-6, "{name}");
         }
+    }
+    // Without the second force it vanishes, whatever the first force is.
+    let text = text.replace("e = 1", "e = 0, swing = 100").replace("force = 100", "force = \"swing\"");
+    for steps in [7, 10, 40, 200] {
+        let file = parsed(&text.replace("steps = 10", &format!("steps = {steps}")));
+        let found = metrics(&file.model, &Analysis::new(&file.model).unwrap().run());
+        let [(least, by_swing), (span, span_by_swing)] =
+            [0, 1].map(|m| (found[m].value.unwrap(), found[m].d[1]));
+        assert_eq!([least, by_swing], [0.0; 2], "{steps} steps");
+        assert!((span_by_swing - span / 100.0).abs() <= 3e-7 * span / 100.0, "{steps} steps: {:?}", found[1]);
     }
 }
 

@@ -327,6 +327,12 @@ impl Law {
         over.settled(self.at(0.5 * (from + to)).value(), to - from)
     }
 
+    /// True if the value is bounded between two times, which is part of [`over`](Self::over).
+    pub(crate) fn is_bounded(&self, from: f64, to: f64) -> bool {
+        let bounded = |over: Stretch| over.value.is_bounded();
+        bounded(self.kind.over(from, to)) || self.over_sides(from, to).is_some_and(bounded)
+    }
+
     /// Range between the times at which branches of the law switch: a branch may be undefined over the whole interval,
     /// and defined where it counts, like `if(t < 1, 0, (t - 1)^1.5)`. The rate is unbounded, since the value may jump.
     fn over_sides(&self, from: f64, to: f64) -> Option<Stretch> {

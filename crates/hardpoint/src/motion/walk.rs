@@ -209,7 +209,7 @@ impl<'s, 'm> Walk<'s, 'm> {
         for driver in 0..self.one.mechanism.drivers.len() {
             let Mechanism { parts, driver_units, .. } = &self.one.mechanism;
             let law = parts.law_of(driver);
-            let bounded = |from: f64, to: f64| law.over(from, to).value.is_bounded();
+            let bounded = |from: f64, to: f64| law.is_bounded(from, to);
             let (mut from, mut to) = (start, target);
             while !bounded(from, to) && to - from > POLE[0] * whole {
                 let middle = 0.5 * (from + to);

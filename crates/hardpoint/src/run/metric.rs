@@ -163,8 +163,8 @@ const RESOLVED: f64 = 1e-10;
 const RESOLVED_BY_OUTPUTS: f64 = 1e-7;
 
 /// Maximum minus minimum of a curve at its times.
-fn range_of(y: &SampledCurve<'_, f64>) -> f64 {
-    let finite = || y.values.iter().map(|v| v[0]).filter(|x| x.is_finite());
+fn range_of<T: Real>(y: &SampledCurve<'_, T>) -> f64 {
+    let finite = || y.values.iter().map(|v| v[0].value()).filter(|x| x.is_finite());
     finite().fold(f64::NEG_INFINITY, f64::max) - finite().fold(f64::INFINITY, f64::min)
 }
 
@@ -873,7 +873,17 @@ fn extreme<T: Real>(
             offer(y.value_over(x.as_ref(), k, t, end), y.within(k, t));
         }
     }
-    best
+    best.map(|(value, t)| (at_kink(y, value).map_or(value, T::constant), t))
+}
+
+/// The kink from which this value of a curve without rates cannot be told. There a magnitude has its least value, which
+/// no change of the design makes less.
+fn at_kink<T: Real>(y: &SampledCurve<'_, T>, value: T) -> Option<f64> {
+    if y.orders > 1 || y.kinks.is_empty() {
+        return None;
+    }
+    let near = RESOLVED * range_of(y);
+    y.kinks.iter().copied().find(|kink| (value.value() - kink).abs() < near)
 }
 
 #[cfg(test)]
