@@ -55,7 +55,7 @@ const fn kind(
     Kind { name, of, order, dimension }
 }
 
-/// Kinds of motion, order by order, translation of the origin first.
+/// Kinds of motion, order by order, translation of the origin first, like [`BodySensitivity`].
 const KINDS: [Kind; 6] = [
     kind("position", |s| s.dr, 0, Dimension::LENGTH),
     kind("orientation", |s| s.dpi, 0, Dimension::ANGLE),
@@ -274,12 +274,10 @@ impl<'a> ComparisonBuilder<'a> {
         // Row by row and body by body, like the difference; empty if the mechanism cannot follow the variable.
         let exact = self.times().filter_map(|k| solution.sensitivities.at(k, d.variable.0));
         let exact: Vec<BodySensitivity> = exact.flat_map(|bodies| bodies.iter()).collect();
-        for kind in KINDS {
+        let largest = solution.sensitivities.largest(solution.motion.len(), d.variable.0);
+        for (kind, largest) in KINDS.into_iter().zip(largest) {
             let of = kind.of;
             let analytic = |row: usize, i: usize| exact.get(row * n + i).map(of);
-            let all = (0..solution.motion.len()).filter_map(|k| solution.sensitivities.at(k, d.variable.0));
-            let sizes = all.flat_map(|bodies| bodies.iter()).map(|s| of(&s).norm());
-            let largest = sizes.fold(0.0, f64::max);
             let scale = largest.max(self.negligible(kind.dimension, kind.order));
             for i in 1..n {
                 let name = format!("{} {}", self.model.bodies[i].name, kind.name);
@@ -316,9 +314,8 @@ impl<'a> ComparisonBuilder<'a> {
     /// Scale of deviations of the given time derivative of output m.
     fn scale_of(&self, m: usize, order: usize) -> f64 {
         let measured = &self.solution.measured;
-        let sizes =
-            (0..self.solution.motion.len()).map(|k| measured.derivative(k, self.d.variable, m, order).abs());
-        sizes.fold(0.0, f64::max).max(self.negligible(measured.outputs[m].dimension, order))
+        let largest = measured.largest_derivative(self.d.variable, m, order);
+        largest.max(self.negligible(measured.outputs[m].dimension, order))
     }
 
     /// True if output m has all its orders at time k. The neighbours of a time without values are unreliable.

@@ -52,10 +52,7 @@ pub fn validity(
         (0..variables).filter(|v| solution.sensitivities.at(0, *v).is_some()).collect();
     // The largest sensitivity of each output over the motion, and how far that takes it with a natural step of the
     // variable. max over the motion of abs(y_b)
-    let first = |v: usize, m: usize| {
-        let d = (0..measured.len()).map(|k| measured.derivative(k, VariableId(v), m, 0).abs());
-        d.fold(0.0, f64::max)
-    };
+    let first = |v: usize, m: usize| measured.largest_derivative(VariableId(v), m, 0);
     let firsts: Vec<Vec<f64>> = (0..variables).map(|v| (0..outputs).map(|m| first(v, m)).collect()).collect();
     let natural: Vec<f64> = (0..variables).map(|v| model.natural_step(VariableId(v))).collect();
     let strongest = |m: usize| followed.iter().map(|&v| firsts[v][m] * natural[v]).fold(0.0, f64::max);

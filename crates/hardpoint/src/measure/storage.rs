@@ -94,6 +94,11 @@ impl MeasureResults {
         }
     }
 
+    /// Largest magnitude over all output times of a [`derivative`](Self::derivative), of those that are known.
+    pub fn largest_derivative(&self, b: VariableId, m: usize, order: usize) -> f64 {
+        (0..self.len()).map(|k| self.derivative(k, b, m, order).abs()).fold(0.0, f64::max)
+    }
+
     /// Number of output times.
     pub fn len(&self) -> usize {
         if self.outputs.is_empty() { 0 } else { self.steps }

@@ -113,6 +113,21 @@ impl Sensitivities {
         Some(Derivatives { row: self.derivatives.row(k), places })
     }
 
+    /// Largest norms over all bodies and the first `steps` output times by variable b, in the order of the fields of
+    /// [`BodySensitivity`]; zero if the variable is not admissible.
+    pub fn largest(&self, steps: usize, b: usize) -> [f64; 6] {
+        let mut largest = [0.0; 6];
+        for derivatives in (0..steps).filter_map(|k| self.at(k, b)) {
+            for BodySensitivity { dr, dpi, dv, domega, da, dalpha } in derivatives.iter() {
+                let sizes = [dr, dpi, dv, domega, da, dalpha];
+                for (largest, size) in largest.iter_mut().zip(sizes) {
+                    *largest = f64::max(*largest, size.norm());
+                }
+            }
+        }
+        largest
+    }
+
     /// True if a variable moves a body at all.
     pub fn moves(&self, variable: VariableId, body: BodyId) -> bool {
         self.places[variable.0 * self.bodies + body.0].is_some()
