@@ -516,6 +516,8 @@ impl Session {
             if goes_on.get() { self.go_on() } else { ControlFlow::Break(()) }
         });
         let run = if sensitivities { run } else { run.without_sensitivities() };
+        // Minima of clearances are located after the last output time.
+        let analysis = self.until_interrupted(analysis.clone());
         let whole = analysis.solve_in_windows(run, WINDOW_BYTES, |first, window| {
             gathering.add(first, window);
             goes_on.set(each(window) && goes_on.get());

@@ -179,6 +179,13 @@ fn is_behind(points: &[Vec3], corners: [Vec3; 3], n: Vec3, distance: f64) -> boo
     distance > 0.0 && lowest - highest >= distance * distance
 }
 
+/// True if two triangles are at least this far apart along the line between their centroids.
+fn is_beyond(p: [Vec3; 3], q: [Vec3; 3], distance: f64) -> bool {
+    let between = (p[0] + p[1] + p[2] - q[0] - q[1] - q[2]) * (1.0 / 3.0);
+    let length = between.norm();
+    length > 0.0 && distance.is_finite() && is_behind(&p, q, between * (distance / length), distance)
+}
+
 /// Feature of a surface, by that of one of its edges as a segment.
 fn of_edge(feature: Feature, ends: [u32; 2]) -> Feature {
     match feature {
@@ -409,6 +416,10 @@ pub(super) fn surfaces(a: View<'_>, b: View<'_>, place: Pose) -> Nearest {
     let mut each = |s: usize, t: usize| {
         let ((p, ids), (q, others)) = (a.triangle(s), b.triangle(t));
         let q = number::each(&q, |q| place.point(q));
+        let [near, other] = best.points;
+        if is_behind(&p, q, near - other, best.distance) || is_beyond(p, q, best.distance) {
+            return best.distance;
+        }
         for k in 0..3 {
             let (own, other) = ([p[k], p[(k + 1) % 3]], [q[k], q[(k + 1) % 3]]);
             if is_pierced(own, q) || is_pierced(other, p) {

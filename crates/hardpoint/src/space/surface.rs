@@ -132,13 +132,14 @@ impl Surface {
         if self.nodes.is_empty() || other.nodes.is_empty() {
             return;
         }
-        let centres: Vec<Vec3> = other.nodes.iter().map(|node| place(node.centre)).collect();
-        let bound = |a: usize, b: usize| {
-            (centres[b] - self.nodes[a].centre).norm() - self.nodes[a].radius - other.nodes[b].radius
+        let bound = |a: usize, b: usize, centre: Vec3| {
+            (centre - self.nodes[a].centre).norm() - self.nodes[a].radius - other.nodes[b].radius
         };
         let mut least = f64::INFINITY;
-        let mut open = vec![(bound(0, 0), 0, 0)];
-        while let Some((at_least, a, b)) = open.pop() {
+        // Pairs of balls with a bound of their distance, and the centre of the second one, placed here.
+        let centre = place(other.nodes[0].centre);
+        let mut open = vec![(bound(0, 0, centre), 0, 0, centre)];
+        while let Some((at_least, a, b, centre)) = open.pop() {
             if at_least > least {
                 continue;
             }
@@ -146,10 +147,10 @@ impl Surface {
             // The larger one is divided.
             let divided = match (p.halves, q.halves) {
                 (Some(halves), _) if q.halves.is_none() || p.radius >= q.radius => {
-                    number::both(halves, |half| (half, b))
+                    number::both(halves, |half| (half, b, centre))
                 }
-                (_, Some(halves)) => number::both(halves, |half| (a, half)),
-                (Some(halves), None) => number::both(halves, |half| (half, b)),
+                (_, Some(halves)) => number::both(halves, |half| (a, half, place(other.nodes[half].centre))),
+                (Some(halves), None) => number::both(halves, |half| (half, b, centre)),
                 (None, None) => {
                     for s in p.triangles[0]..p.triangles[1] {
                         for t in q.triangles[0]..q.triangles[1] {
@@ -159,7 +160,7 @@ impl Surface {
                     continue;
                 }
             };
-            let mut bounds = number::both(divided, |(a, b)| (bound(a, b), a, b));
+            let mut bounds = number::both(divided, |(a, b, centre)| (bound(a, b, centre), a, b, centre));
             if bounds[0].0 < bounds[1].0 {
                 bounds.swap(0, 1);
             }
