@@ -2,7 +2,7 @@
 
 use hardpoint::joint::Quantity;
 use hardpoint::model::{Model, OutputSource};
-use hardpoint::motion::{Stop, StopKind};
+use hardpoint::motion::{SolverStatistics, StepMethod, Stop, StopKind};
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::{Diagnostic, ModelFile, Units};
 use serde::Serialize;
@@ -222,6 +222,22 @@ pub struct Timings {
     pub total: f64,
 }
 
+/// The first output time, and at most two last ones that are no eight, are always solved by the kernel.
+const ENDS: usize = 3;
+
+/// Solver of this number of steps, and how many of them programs left to the kernel: those that are long, and
+/// sensitivities by parameters of laws.
+fn method(by: &StepMethod, effort: SolverStatistics, solved: usize) -> String {
+    let left = solved.saturating_sub(effort.by_program);
+    match by {
+        StepMethod::Kernel(_) => by.to_string(),
+        StepMethod::Code(_) | StepMethod::Interpreter(_) if left <= ENDS => by.to_string(),
+        StepMethod::Code(_) | StepMethod::Interpreter(_) => {
+            format!("{by}; {left} of {solved} output times by the kernel, one by one")
+        }
+    }
+}
+
 impl Summary {
     /// Table of the linear ranges, with the numerical quality of the motion.
     pub fn validity_table(&self) -> Option<Table> {
@@ -252,7 +268,7 @@ impl Summary {
                 metrics_every: course.metric_stride,
             },
             effort: EffortFact {
-                solved_by: course.kept.motion.solved_by.as_ref().map(ToString::to_string),
+                solved_by: course.kept.motion.solved_by.as_ref().map(|by| method(by, effort, course.steps)),
                 steps_by_program: effort.by_program,
                 iterations: effort.iterations,
                 substeps: effort.substeps,
