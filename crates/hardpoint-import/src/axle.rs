@@ -1,4 +1,4 @@
-//! Members of a live axle: rods, springs and dampers between the vehicle body and one rigid axle.
+//! Members of corners and live axles: rods, springs and dampers between the vehicle body and an upright or axle.
 
 use hardpoint::space::{Pose, Vec3};
 

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use hardpoint::model::VehicleEnd;
 use hardpoint::space::Vec3;
 
+use crate::axle::{body, leg, rod};
 use crate::cases;
 use crate::markers::ElementSource;
 use crate::mechanism::{Coordinate, Drives, Force, ForceOn, GROUND, Joint, Law, Mechanism, Spring, Wheel};
@@ -430,6 +431,13 @@ pub struct Corner {
 /// Ends of a spring: body and point.
 type Ends = [(usize, Vec3); 2];
 
+/// Front pivot, rear pivot and ball joint of the lower arm.
+const LOWER_ARM: [Role; 3] = [Role::LowerFront, Role::LowerRear, Role::LowerOuter];
+/// Front pivot, rear pivot and ball joint of the upper arm.
+const UPPER_ARM: [Role; 3] = [Role::UpperFront, Role::UpperRear, Role::UpperOuter];
+/// Inner and outer end of the tie rod.
+const TIE_ROD: [Role; 2] = [Role::TieInner, Role::TieOuter];
+
 /// Default radius of a wheel, mm.
 const RADIUS: f64 = 330.0;
 
@@ -466,15 +474,23 @@ impl Corner {
         found.and_then(|v| <[Vec3; N]>::try_from(v).ok())
     }
 
+    /// Returns the name of a body or joint of the corner.
+    fn name(&self, base: &str) -> String {
+        format!("{base}{}", self.suffix)
+    }
+
+    /// Returns the number of constraints of the upright by the arms and the tie rod.
+    fn constraints(&self) -> usize {
+        let arms = [LOWER_ARM, UPPER_ARM].into_iter().filter(|arm| self.all(*arm).is_some());
+        2 * arms.count() + usize::from(self.all(TIE_ROD).is_some())
+    }
+
     /// Returns true if this number of rods, together with an arm and the tie rod, leaves the upright one degree of
     /// freedom, as in a multi-link suspension.
     pub fn is_held_by(&self, rods: usize) -> bool {
         use Role::*;
-        let arm = |roles: [Role; 3]| 2 * usize::from(self.all(roles).is_some());
-        let arms = arm([LowerFront, LowerRear, LowerOuter]) + arm([UpperFront, UpperRear, UpperOuter]);
-        let tie = usize::from(self.all([TieInner, TieOuter]).is_some());
         let is_guided = [TrailingA, TrailingB, TrailingBall].iter().any(|r| self.get(*r).is_some());
-        rods > 0 && !is_guided && arms + tie + rods == 5
+        rods > 0 && !is_guided && self.constraints() + rods == 5
     }
 
     /// Returns the mirror image of the corner.
@@ -493,156 +509,156 @@ impl Corner {
     /// the topology is known.
     pub fn build(&self, m: &mut Mechanism, notes: &mut ImportLog, rack: &mut Option<usize>) -> bool {
         use Role::*;
-        let lower = self.all([LowerFront, LowerRear, LowerOuter]);
-        let upper = self.all([UpperFront, UpperRear, UpperOuter]);
-        let strut = self.all([StrutTop, StrutBottom]);
-        let trailing = self.all([TrailingA, TrailingB]);
+        let strut = self.strut_ends();
         let ball = self.get(TrailingBall);
-        let tie = self.all([TieInner, TieOuter]);
-        let ties = self.links.len() + usize::from(tie.is_some());
-        let arms_held = 2 * (usize::from(lower.is_some()) + usize::from(upper.is_some()));
-        let held = arms_held + 3 * usize::from(ball.is_some()) + ties;
-        let is_strut = lower.is_some() && upper.is_none() && strut.is_some() && self.links.is_empty();
-        if !(trailing.is_some() || is_strut || held >= 5) {
+        let held = self.constraints() + 3 * usize::from(ball.is_some()) + self.links.len();
+        if self.trailing_axis().is_none() && strut.is_none() && held < 5 {
             return false;
         }
-        let same = [("strut", strut), ("trailing arm's axis", trailing), ("tie rod", tie)];
-        for (what, _) in same.iter().filter(|(_, ends)| ends.is_some_and(|[a, b]| a == b)) {
-            notes.problem_with(
-                "HP0804",
-                self.at,
-                format!("both points of the {what} coincide"),
-                "correct one of them",
-            );
-        }
+        self.check_points(notes);
         if notes.problem_count() > 0 {
             return true;
         }
-        let name = |base: &str| format!("{base}{}", self.suffix);
-        let frame = |at: Vec3| Some(hardpoint::space::Pose { rot: crate::turn::none(), r: at });
         let centre = self.get(WheelCentre);
-        let upright_at = centre.or(lower.map(|l| l[2])).unwrap_or_else(Vec3::zero);
-        let upright = m.body(&name("upright"), String::new(), frame(upright_at));
-        let mut arms: BTreeMap<&str, usize> = BTreeMap::new();
-        for (arm, points) in [("lower_arm", lower), ("upper_arm", upper)] {
-            let Some([front, rear, outer]) = points else { continue };
-            let body = m.body(&name(arm), String::new(), frame((front + rear) * 0.5));
-            if (front - rear).norm() > 0.0 {
-                m.joint(
-                    Joint::new(
-                        &name(&format!("{arm}_pivot")),
-                        String::new(),
-                        "revolute",
-                        [GROUND, body],
-                        rear,
-                    )
-                    .through(rear, front),
-                );
-            } else {
-                notes.problem_with(
-                    "HP0804",
-                    self.at,
-                    format!("both pivots of the {} coincide", arm.replace('_', " ")),
-                    "correct one of them",
-                );
-            }
-            m.joint(Joint::new(
-                &name(&format!("{arm}_ball")),
-                String::new(),
-                "spherical",
-                [body, upright],
-                outer,
-            ));
-            arms.insert(arm, body);
-            notes.taken("arm", &name(arm), self.at);
+        let upright_at = centre.or(self.all(LOWER_ARM).map(|l| l[2])).unwrap_or_else(Vec3::zero);
+        let upright = body(m, &self.name("upright"), upright_at);
+        let arms = [("lower_arm", LOWER_ARM), ("upper_arm", UPPER_ARM)];
+        let [lower, upper] = arms.map(|(arm, points)| self.arm(m, notes, upright, arm, points));
+        if let Some(ends) = strut {
+            self.strut(m, notes, upright, ends);
         }
-        if let (true, Some([top, bottom])) = (is_strut, strut) {
-            let body = m.body(&name("strut"), String::new(), frame(top));
-            m.joint(Joint::new(&name("strut_top_mount"), String::new(), "spherical", [GROUND, body], top));
-            let mut slide =
-                Joint::new(&name("strut_slide"), String::new(), "translational", [upright, body], bottom)
-                    .through(bottom, top);
-            slide.draw = Some("coilover");
-            m.joint(slide);
-            notes.taken("strut", &name("strut"), self.at);
-            self.force(m, notes, "coilover", [(GROUND, top), (upright, bottom)]);
-        }
-        if let Some([a, b]) = trailing {
-            m.joint(
-                Joint::new(&name("trailing_arm_pivot"), String::new(), "revolute", [GROUND, upright], a)
-                    .through(a, b),
-            );
-            notes.taken("arm", &name("trailing_arm"), self.at);
-        }
-        if let Some(at) = ball {
-            let kind = "spherical";
-            m.joint(Joint::new(&name("trailing_arm_ball"), String::new(), kind, [GROUND, upright], at));
-            notes.taken("arm", &name("trailing_arm"), self.at);
-        }
-        let carries = |link: &Link| {
-            let mounts = [&self.rod_on, &self.spring_on, &self.damper_on];
-            mounts.into_iter().any(|m| matches!(m, Some(Mount::Link(name)) if *name == link.name))
-        };
-        let mut bodies: BTreeMap<&str, usize> = BTreeMap::new();
-        for link in self.links.iter().filter(|l| l.ends[0] != l.ends[1]) {
-            let [inner, outer] = link.ends;
-            let own = name(&link.name);
-            if carries(link) {
-                let body = m.body(&own, String::new(), frame(inner));
-                let [a, b] = link.cross();
-                let cross =
-                    Joint::new(&format!("{own}_cross"), String::new(), "universal", [GROUND, body], inner);
-                m.joint(cross.with_axes(a, b));
-                m.joint(Joint::new(
-                    &format!("{own}_ball"),
-                    String::new(),
-                    "spherical",
-                    [body, upright],
-                    outer,
-                ));
-                bodies.insert(&link.name, body);
-                if link.pins.is_none() {
-                    let why = "it carries another part: its rotation about itself is not in the file, and a cross at its inner end fixes it";
-                    notes.approximated("link", &own, link.at, why);
-                    continue;
-                }
-            } else {
-                let rod = Joint::new(&own, String::new(), "distance", [GROUND, upright], inner);
-                m.joint(rod.between(inner, outer));
-            }
-            notes.taken("link", &own, link.at);
-        }
-        if let Some([inner, outer]) = tie {
-            let carrier = if self.rack { self.rack_of(m, notes, rack, inner) } else { GROUND };
-            m.joint(
-                Joint::new(&name("tie_rod"), String::new(), "distance", [carrier, upright], inner)
-                    .between(inner, outer),
-            );
-            notes.taken("link", &name("tie_rod"), self.at);
+        self.trailing_arm(m, notes, upright);
+        let links = self.links(m, notes, upright);
+        if let Some(ends) = self.all(TIE_ROD) {
+            let carrier = if self.rack { self.rack_of(m, notes, rack, ends[0]) } else { GROUND };
+            rod(m, notes, &self.name("tie_rod"), [carrier, upright], ends, self.at);
         }
         let on = |mount: &Mount| match mount {
-            Mount::Lower => arms.get("lower_arm").copied(),
-            Mount::Upper => arms.get("upper_arm").copied(),
+            Mount::Lower => lower,
+            Mount::Upper => upper,
             Mount::Upright => Some(upright),
-            Mount::Link(name) => bodies.get(name.as_str()).copied(),
+            Mount::Link(name) => links.get(name.as_str()).copied(),
             Mount::Nothing(_) => None,
         };
         let rocker = self.rocker(m, notes, &on);
-        let mut spring = self.springs(m, notes, &on, rocker, is_strut);
-        if let (true, Some([top, bottom])) = (is_strut, strut) {
-            spring = Some([(GROUND, top), (upright, bottom)]);
-        }
+        let leg = self.springs(m, notes, &on, rocker, strut.is_some());
+        let spring = strut.map(|[top, bottom]| [(GROUND, top), (upright, bottom)]).or(leg);
         if let Some(centre) = centre {
             self.wheel(m, notes, upright, centre, spring);
         } else {
-            notes.approximated(
-                "wheel",
-                &name("wheel"),
-                self.at,
-                "its centre is not in the file: motions are fixed, or oscillate if there is only one",
-            );
+            let why = "its centre is not in the file: motions are fixed, or oscillate if there is only one";
+            notes.approximated("wheel", &self.name("wheel"), self.at, why);
         }
         true
+    }
+
+    /// Returns the pivots of the trailing arm.
+    fn trailing_axis(&self) -> Option<[Vec3; 2]> {
+        self.all([Role::TrailingA, Role::TrailingB])
+    }
+
+    /// Returns the ends of the strut, upper one first, if it guides the upright together with the lower arm.
+    fn strut_ends(&self) -> Option<[Vec3; 2]> {
+        let is_guided =
+            self.all(LOWER_ARM).is_some() && self.all(UPPER_ARM).is_none() && self.links.is_empty();
+        self.all([Role::StrutTop, Role::StrutBottom]).filter(|_| is_guided)
+    }
+
+    /// HP0804: two points that define an axis or a rod coincide.
+    fn check_points(&self, notes: &mut ImportLog) {
+        let strut = self.all([Role::StrutTop, Role::StrutBottom]);
+        let lines =
+            [("strut", strut), ("trailing arm's axis", self.trailing_axis()), ("tie rod", self.all(TIE_ROD))];
+        for (what, _) in lines.iter().filter(|(_, ends)| ends.is_some_and(|[a, b]| a == b)) {
+            let message = format!("both points of the {what} coincide");
+            notes.problem_with("HP0804", self.at, message, "correct one of them");
+        }
+    }
+
+    /// Adds an arm between the vehicle body and the upright. Returns its body.
+    fn arm(
+        &self,
+        m: &mut Mechanism,
+        notes: &mut ImportLog,
+        upright: usize,
+        arm: &str,
+        points: [Role; 3],
+    ) -> Option<usize> {
+        let [front, rear, outer] = self.all(points)?;
+        let name = self.name(arm);
+        let body = body(m, &name, (front + rear) * 0.5);
+        if (front - rear).norm() > 0.0 {
+            let pivot = self.name(&format!("{arm}_pivot"));
+            let pivot = Joint::new(&pivot, String::new(), "revolute", [GROUND, body], rear);
+            m.joint(pivot.through(rear, front));
+        } else {
+            let message = format!("both pivots of the {} coincide", arm.replace('_', " "));
+            notes.problem_with("HP0804", self.at, message, "correct one of them");
+        }
+        let ball = self.name(&format!("{arm}_ball"));
+        m.joint(Joint::new(&ball, String::new(), "spherical", [body, upright], outer));
+        notes.taken("arm", &name, self.at);
+        Some(body)
+    }
+
+    /// Adds the strut, along which the upright slides, and the force of its coilover.
+    fn strut(&self, m: &mut Mechanism, notes: &mut ImportLog, upright: usize, [top, bottom]: [Vec3; 2]) {
+        let name = self.name("strut");
+        let body = body(m, &name, top);
+        let mount = self.name("strut_top_mount");
+        m.joint(Joint::new(&mount, String::new(), "spherical", [GROUND, body], top));
+        let slide = self.name("strut_slide");
+        let mut slide = Joint::new(&slide, String::new(), "translational", [upright, body], bottom);
+        slide.draw = Some("coilover");
+        m.joint(slide.through(bottom, top));
+        notes.taken("strut", &name, self.at);
+        self.force(m, notes, "coilover", [(GROUND, top), (upright, bottom)]);
+    }
+
+    /// Adds the pivot and the ball joint of the trailing arm, whose body is the upright.
+    fn trailing_arm(&self, m: &mut Mechanism, notes: &mut ImportLog, upright: usize) {
+        let pivot = self.trailing_axis().map(|[a, b]| {
+            let pivot = self.name("trailing_arm_pivot");
+            Joint::new(&pivot, String::new(), "revolute", [GROUND, upright], a).through(a, b)
+        });
+        let ball = self.get(Role::TrailingBall).map(|at| {
+            let ball = self.name("trailing_arm_ball");
+            Joint::new(&ball, String::new(), "spherical", [GROUND, upright], at)
+        });
+        for joint in [pivot, ball].into_iter().flatten() {
+            m.joint(joint);
+            notes.taken("arm", &self.name("trailing_arm"), self.at);
+        }
+    }
+
+    /// Adds the links as rods, or with a body if they carry another part. Returns these bodies by the name of the link.
+    fn links(&self, m: &mut Mechanism, notes: &mut ImportLog, upright: usize) -> BTreeMap<&str, usize> {
+        let mounts = [&self.rod_on, &self.spring_on, &self.damper_on];
+        let carries = |link: &Link| {
+            mounts.into_iter().any(|m| matches!(m, Some(Mount::Link(name)) if *name == link.name))
+        };
+        let mut bodies = BTreeMap::new();
+        for link in self.links.iter().filter(|l| l.ends[0] != l.ends[1]) {
+            let name = self.name(&link.name);
+            if !carries(link) {
+                rod(m, notes, &name, [GROUND, upright], link.ends, link.at);
+                continue;
+            }
+            let [inner, outer] = link.ends;
+            let body = body(m, &name, inner);
+            let [a, b] = link.cross();
+            let (cross, ball) = (format!("{name}_cross"), format!("{name}_ball"));
+            m.joint(Joint::new(&cross, String::new(), "universal", [GROUND, body], inner).with_axes(a, b));
+            m.joint(Joint::new(&ball, String::new(), "spherical", [body, upright], outer));
+            bodies.insert(link.name.as_str(), body);
+            if link.pins.is_some() {
+                notes.taken("link", &name, link.at);
+            } else {
+                let why = "it carries another part: its rotation about itself is not in the file, and a cross at its inner end fixes it";
+                notes.approximated("link", &name, link.at, why);
+            }
+        }
+        bodies
     }
 
     /// Returns the rack of the axle, which is added if necessary.
@@ -692,10 +708,9 @@ impl Corner {
         on: &dyn Fn(&Mount) -> Option<usize>,
     ) -> Option<usize> {
         use Role::*;
-        let name = |base: &str| format!("{base}{}", self.suffix);
         let [outer, inner] = self.all([RodOuter, RodInner])?;
         let Some([a, b]) = self.all([RockerA, RockerB]).filter(|[a, b]| a != b && outer != inner) else {
-            notes.refused("push rod", &name("push_rod"), self.at, "its rocker has no axis in the file");
+            notes.refused("push rod", &self.name("push_rod"), self.at, "its rocker has no axis in the file");
             return None;
         };
         let nearest = || {
@@ -706,30 +721,27 @@ impl Corner {
         if self.rod_on.is_none() {
             let why =
                 "the part at its outer end is not in the file: the arm with the nearest ball joint is used";
-            notes.approximated("push rod", &name("push_rod"), self.at, why);
+            notes.approximated("push rod", &self.name("push_rod"), self.at, why);
         }
         let Some(carrier) = on(&mount) else {
             notes.refused(
                 "push rod",
-                &name("push_rod"),
+                &self.name("push_rod"),
                 self.at,
                 "the part at its outer end has no body in the model",
             );
             return None;
         };
-        let body = m.body(
-            &name("rocker"),
-            String::new(),
-            Some(hardpoint::space::Pose { rot: crate::turn::none(), r: a }),
+        let body = body(m, &self.name("rocker"), a);
+        m.joint(
+            Joint::new(&self.name("rocker_pivot"), String::new(), "revolute", [GROUND, body], a)
+                .through(a, b),
         );
         m.joint(
-            Joint::new(&name("rocker_pivot"), String::new(), "revolute", [GROUND, body], a).through(a, b),
-        );
-        m.joint(
-            Joint::new(&name("push_rod"), String::new(), "distance", [carrier, body], outer)
+            Joint::new(&self.name("push_rod"), String::new(), "distance", [carrier, body], outer)
                 .between(outer, inner),
         );
-        notes.taken("rocker", &name("rocker"), self.at);
+        notes.taken("rocker", &self.name("rocker"), self.at);
         Some(body)
     }
 
@@ -746,13 +758,13 @@ impl Corner {
         use Role::*;
         let mut spring = None;
         let pairs = [
-            ("coilover", [StrutTop, StrutBottom], "coilover", is_strut),
-            ("damper", [DamperChassis, DamperMoving], "damper", false),
-            ("spring", [SpringChassis, SpringMoving], "spring", false),
+            ("coilover", [StrutTop, StrutBottom], is_strut),
+            ("damper", [DamperChassis, DamperMoving], false),
+            ("spring", [SpringChassis, SpringMoving], false),
         ];
-        for (base, ends, form, done) in pairs {
+        for (base, ends, done) in pairs {
             let Some([top, bottom]) = self.all(ends).filter(|[a, b]| !done && a != b) else { continue };
-            let name = format!("{base}{}", self.suffix);
+            let name = self.name(base);
             let guess = if self.get(LowerOuter).is_some() { Mount::Lower } else { Mount::Upright };
             let own = self.damper_on.clone().filter(|_| base == "damper");
             let mount = own.or_else(|| self.spring_on.clone()).unwrap_or(guess);
@@ -761,11 +773,7 @@ impl Corner {
                 notes.refused(base, &name, self.at, "the part at its lower end has no body in the model");
                 continue;
             };
-            let mut leg =
-                Joint::new(&name, String::new(), "leg", [GROUND, carrier], top).between(top, bottom);
-            leg.draw = Some(form);
-            m.joint(leg);
-            notes.taken(base, &name, self.at);
+            leg(m, notes, &name, [GROUND, carrier], [top, bottom], base, self.at);
             let ends = [(GROUND, top), (carrier, bottom)];
             self.force(m, notes, base, ends);
             if base != "damper" {
@@ -778,7 +786,7 @@ impl Corner {
     /// Adds the force of a coilover, spring or damper if the source defines its characteristic.
     pub fn force(&self, m: &mut Mechanism, notes: &mut ImportLog, base: &str, ends: Ends) {
         let Some((spring, at)) = self.springs.get(base) else { return };
-        let name = format!("{base}{}", self.suffix);
+        let name = self.name(base);
         let note = ElementSource { kind: base, name: &name, at: Some(*at) }.note(notes);
         m.force(Force { name: name.clone(), note, on: ForceOn::Points(ends), spring: spring.clone() });
         notes.taken("force", &name, Some(*at));
@@ -794,7 +802,7 @@ impl Corner {
         spring: Option<Ends>,
     ) {
         use Role::*;
-        let name = format!("wheel{}", self.suffix);
+        let name = self.name("wheel");
         let per_mm = m.per_mm();
         let outboard = Vec3::from([0.0, if centre.y < 0.0 { -1.0 } else { 1.0 }, 0.0]);
         let axis = self.get(Spindle).and_then(|s| (centre - s).unit()).or(self.spin_axis).unwrap_or(outboard);
