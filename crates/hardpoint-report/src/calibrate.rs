@@ -681,140 +681,27 @@ impl CalibrateFacts {
 
     /// Further tables: variables, unidentifiable changes, large residuals, proposed readings.
     pub fn tables(&self) -> Vec<Table> {
-        let parts = |list: &[(String, f64, String)], shown: fn(f64, &str) -> String| {
-            let one = |(name, x, unit): &(String, f64, String)| format!("{name} {}", shown(*x, unit));
-            list.iter().map(one).collect::<Vec<_>>().join(", ")
-        };
-        let effect = |n: &NextFact| match (n.tells, &n.variable, n.sigmas, &n.variable_unit) {
-            (Some(k), ..) => format!("determines change {k}"),
-            (None, Some(variable), Some([before, after]), Some(unit)) => {
-                format!("{variable}: from ± {} to ± {}", number(before), with_unit(after, unit))
-            }
-            _ => String::new(),
-        };
-        let certainty = |v: &CalibratedVariable| {
-            v.sigma.filter(|s| *s > 0.0).map_or(String::new(), |s| rounded((v.end - v.start) / s, 3))
-        };
-        let sigma = |v: &CalibratedVariable| {
-            v.sigma.map_or(v.source.into(), |s| format!("± {}", with_unit(s, &v.unit)))
-        };
         let has_source = self.priors > 0 || self.variables.iter().any(|v| v.source.starts_with("at its"));
+        let validated = self.validation.as_ref().and_then(|v| ValidatedMeasure::table(&v.measures));
+        let by_prior = self.by_prior.iter().take(LISTED);
         let tables = [
-            Table::of(
-                "Prior and posterior",
-                "Learnt from data: the posterior standard deviation is at most 0.71 of the prior one.",
-                &[
-                    ("variable", &|v: &&CalibratedVariable| v.name.clone()),
-                    ("prior", &|v| match (v.prior_mean, v.prior_sigma) {
-                        (Some(mean), Some(sigma)) => format!("{} ± {}", number(mean), with_unit(sigma, &v.unit)),
-                        (None, Some(sigma)) => format!("± {}", with_unit(sigma, &v.unit)),
-                        (_, None) => "none".into(),
-                    }),
-                    ("posterior", &|v| match v.sigma {
-                        Some(sigma) => format!("{} ± {}", number(v.end), with_unit(sigma, &v.unit)),
-                        None => with_unit(v.end, &v.unit),
-                    }),
-                    ("ratio", &|v| {
-                        let ratio = v.sigma.zip(v.prior_sigma).map(|(s, p)| s / p);
-                        ratio.map_or(String::new(), |ratio| rounded(ratio, 3))
-                    }),
-                    ("from prior / sigma", &|v| v.pull.map_or(String::new(), |p| rounded(p, 3))),
-                    ("source", &|v| v.source.into()),
-                ],
-                self.variables.iter().filter(|_| has_source),
-            )
-            .if_any(),
-            Table::of(
+            CalibratedVariable::prior_table(&self.variables).filter(|_| has_source),
+            UnidentifiableFact::table(
                 "Determined by priors",
                 "Changes of the design about which the priors contain more information than the readings.",
-                &[
-                    ("", &|u: &(usize, &UnidentifiableFact)| (u.0 + 1).to_string()),
-                    ("change by", &|u| parts(&u.1.variables, signed)),
-                    ("standard deviation", &|u| {
-                        u.1.sigma.map_or("none".into(), |s| format!("± {} times that", rounded(s, 3)))
-                    }),
-                ],
-                self.by_prior.iter().take(LISTED).enumerate(),
-            )
-            .if_any(),
-            Table::of(
-                "Validation",
-                "Readings that were not fitted: fitted minus measured.",
-                &[
-                    ("measurement", &|m: &&ValidatedMeasure| m.name.clone()),
-                    ("readings", &|m| m.readings.to_string()),
-                    ("mean", &|m| with_unit(m.mean, &m.unit)),
-                    ("root mean square", &|m| with_unit(m.rms, &m.unit)),
-                    ("predicted", &|m| m.predicted.map_or("not determined".into(), |p| with_unit(p, &m.unit))),
-                    ("largest", &|m| with_unit(m.largest, &m.unit)),
-                ],
-                self.validation.iter().flat_map(|v| &v.measures),
-            )
-            .if_any(),
-            Table::of(
-                "Design",
-                "",
-                &[
-                    ("variable", &|v: &&CalibratedVariable| v.name.clone()),
-                    ("nominal", &|v| with_unit(v.start, &v.unit)),
-                    ("fitted", &|v| with_unit(v.end, &v.unit)),
-                    ("standard deviation", &|v| sigma(v)),
-                    ("change / sigma", &|v| certainty(v)),
-                ],
-                &self.variables,
-            )
-            .if_any(),
-            Table::of(
-                "Hardly distinguishable",
-                "Variables with correlated errors: their combination is determined better than each of them.",
-                &[
-                    ("variable", &|t: &&(String, String, f64)| t.0.clone()),
-                    ("and", &|t| t.1.clone()),
-                    ("correlation", &|t| rounded(t.2, 4)),
-                ],
-                &self.together,
-            )
-            .if_any(),
-            Table::of(
+                by_prior,
+            ),
+            validated,
+            CalibratedVariable::design_table(&self.variables),
+            correlation_table(&self.together),
+            UnidentifiableFact::table(
                 "Not determined",
                 "Changes of the design that affect no reading, or too little. The fitted design contains none of them.",
-                &[
-                    ("", &|u: &(usize, &UnidentifiableFact)| (u.0 + 1).to_string()),
-                    ("change by", &|u| parts(&u.1.variables, signed)),
-                    ("standard deviation", &|u| {
-                        u.1.sigma.map_or("none".into(), |s| format!("± {} times that", rounded(s, 3)))
-                    }),
-                ],
-                self.untold.iter().enumerate(),
-            )
-            .if_any(),
+                &self.untold,
+            ),
             MovedHardpoint::table(&self.hardpoints, "fitted"),
-            Table::of(
-                "Large residuals",
-                "Residuals of more than three standard deviations.",
-                &[
-                    ("line", &|f: &&LargeResidual| f.line.to_string()),
-                    ("measurement", &|f| f.column.clone()),
-                    ("measured", &|f| with_unit(f.values[0], &f.unit)),
-                    ("fitted", &|f| with_unit(f.values[1], &f.unit)),
-                    ("residual / sigma", &|f| rounded(f.residual, 3)),
-                    ("weight", &|f| if f.weight < 1.0 { rounded(f.weight, 2) } else { "1".into() }),
-                ],
-                &self.far_off,
-            )
-            .if_any(),
-            Table::of(
-                "Proposed readings",
-                "Most informative further reading of each measure.",
-                &[
-                    ("measure", &|n: &&NextFact| n.measure.clone()),
-                    ("where", &|n| parts(&n.drivers, with_unit)),
-                    ("standard deviation", &|n| format!("± {}", with_unit(n.sigma, &n.unit))),
-                    ("effect", &|n| effect(n)),
-                ],
-                &self.next,
-            )
-            .if_any(),
+            LargeResidual::table(&self.far_off),
+            NextFact::table(&self.next),
         ];
         tables.into_iter().flatten().collect()
     }
@@ -831,6 +718,137 @@ impl CalibrateFacts {
         page.put_study("Calibration", lines, &[], self.tables());
         Payload { sweep: Some(of.plot()), ..page }
     }
+}
+
+impl CalibratedVariable {
+    /// Table of the variables before and after the readings, with their sources.
+    fn prior_table(variables: &[Self]) -> Option<Table> {
+        let columns: [Column<'_, &Self>; 6] = [
+            ("variable", &|v| v.name.clone()),
+            ("prior", &|v| match (v.prior_mean, v.prior_sigma) {
+                (Some(mean), Some(sigma)) => format!("{} ± {}", number(mean), with_unit(sigma, &v.unit)),
+                (None, Some(sigma)) => format!("± {}", with_unit(sigma, &v.unit)),
+                (_, None) => "none".into(),
+            }),
+            ("posterior", &|v| match v.sigma {
+                Some(sigma) => format!("{} ± {}", number(v.end), with_unit(sigma, &v.unit)),
+                None => with_unit(v.end, &v.unit),
+            }),
+            ("ratio", &|v| {
+                let ratio = v.sigma.zip(v.prior_sigma).map(|(s, p)| s / p);
+                ratio.map_or(String::new(), |ratio| rounded(ratio, 3))
+            }),
+            ("from prior / sigma", &|v| v.pull.map_or(String::new(), |p| rounded(p, 3))),
+            ("source", &|v| v.source.into()),
+        ];
+        let note = "Learnt from data: the posterior standard deviation is at most 0.71 of the prior one.";
+        Table::of("Prior and posterior", note, &columns, variables).if_any()
+    }
+
+    /// Table of the nominal and the fitted design.
+    fn design_table(variables: &[Self]) -> Option<Table> {
+        let columns: [Column<'_, &Self>; 5] = [
+            ("variable", &|v| v.name.clone()),
+            ("nominal", &|v| with_unit(v.start, &v.unit)),
+            ("fitted", &|v| with_unit(v.end, &v.unit)),
+            ("standard deviation", &|v| {
+                v.sigma.map_or(v.source.into(), |s| format!("± {}", with_unit(s, &v.unit)))
+            }),
+            ("change / sigma", &|v| {
+                let sigma = v.sigma.filter(|s| *s > 0.0);
+                sigma.map_or(String::new(), |s| rounded((v.end - v.start) / s, 3))
+            }),
+        ];
+        Table::of("Design", "", &columns, variables).if_any()
+    }
+}
+
+impl UnidentifiableFact {
+    /// Table of changes of the design, numbered from 1, with their standard deviations.
+    fn table<'a>(title: &str, note: &str, changes: impl IntoIterator<Item = &'a Self>) -> Option<Table> {
+        let columns: [Column<'_, (usize, &Self)>; 3] = [
+            ("", &|(k, _)| (k + 1).to_string()),
+            ("change by", &|(_, u)| listed(&u.variables, signed)),
+            ("standard deviation", &|(_, u)| {
+                u.sigma.map_or("none".into(), |s| format!("± {} times that", rounded(s, 3)))
+            }),
+        ];
+        Table::of(title, note, &columns, changes.into_iter().enumerate()).if_any()
+    }
+}
+
+impl ValidatedMeasure {
+    /// Table of the residuals of readings that were not fitted.
+    fn table(measures: &[Self]) -> Option<Table> {
+        let columns: [Column<'_, &Self>; 6] = [
+            ("measurement", &|m| m.name.clone()),
+            ("readings", &|m| m.readings.to_string()),
+            ("mean", &|m| with_unit(m.mean, &m.unit)),
+            ("root mean square", &|m| with_unit(m.rms, &m.unit)),
+            ("predicted", &|m| m.predicted.map_or("not determined".into(), |p| with_unit(p, &m.unit))),
+            ("largest", &|m| with_unit(m.largest, &m.unit)),
+        ];
+        let note = "Readings that were not fitted: fitted minus measured.";
+        Table::of("Validation", note, &columns, measures).if_any()
+    }
+}
+
+impl LargeResidual {
+    /// Table of the largest residuals.
+    fn table(residuals: &[Self]) -> Option<Table> {
+        let columns: [Column<'_, &Self>; 6] = [
+            ("line", &|f| f.line.to_string()),
+            ("measurement", &|f| f.column.clone()),
+            ("measured", &|f| with_unit(f.values[0], &f.unit)),
+            ("fitted", &|f| with_unit(f.values[1], &f.unit)),
+            ("residual / sigma", &|f| rounded(f.residual, 3)),
+            ("weight", &|f| if f.weight < 1.0 { rounded(f.weight, 2) } else { "1".into() }),
+        ];
+        let note = "Residuals of more than three standard deviations.";
+        Table::of("Large residuals", note, &columns, residuals).if_any()
+    }
+}
+
+impl NextFact {
+    /// Table of the proposed readings.
+    fn table(readings: &[Self]) -> Option<Table> {
+        let columns: [Column<'_, &Self>; 4] = [
+            ("measure", &|n| n.measure.clone()),
+            ("where", &|n| listed(&n.drivers, with_unit)),
+            ("standard deviation", &|n| format!("± {}", with_unit(n.sigma, &n.unit))),
+            ("effect", &|n| n.effect()),
+        ];
+        let note = "Most informative further reading of each measure.";
+        Table::of("Proposed readings", note, &columns, readings).if_any()
+    }
+
+    /// Effect of the reading: the change that it determines, or the variable whose standard deviation it reduces most.
+    fn effect(&self) -> String {
+        match (self.tells, &self.variable, self.sigmas, &self.variable_unit) {
+            (Some(k), ..) => format!("determines change {k}"),
+            (None, Some(variable), Some([before, after]), Some(unit)) => {
+                format!("{variable}: from ± {} to ± {}", number(before), with_unit(after, unit))
+            }
+            _ => String::new(),
+        }
+    }
+}
+
+/// Table of pairs of variables with correlated errors.
+fn correlation_table(pairs: &[(String, String, f64)]) -> Option<Table> {
+    let columns: [Column<'_, &(String, String, f64)>; 3] = [
+        ("variable", &|(variable, ..)| variable.clone()),
+        ("and", &|(_, other, _)| other.clone()),
+        ("correlation", &|(.., correlation)| rounded(*correlation, 4)),
+    ];
+    let note = "Variables with correlated errors: their combination is determined better than each of them.";
+    Table::of("Hardly distinguishable", note, &columns, pairs).if_any()
+}
+
+/// Names with their values and units.
+fn listed(values: &[(String, f64, String)], shown: fn(f64, &str) -> String) -> String {
+    let one = |(name, x, unit): &(String, f64, String)| format!("{name} {}", shown(*x, unit));
+    values.iter().map(one).collect::<Vec<_>>().join(", ")
 }
 
 fn signed(by: f64, unit: &str) -> String {
