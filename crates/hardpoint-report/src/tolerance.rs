@@ -144,6 +144,19 @@ record! {
 }
 
 impl BandFact {
+    /// Table of the widest bands along curves, if there are any.
+    fn table(bands: &[Self]) -> Option<Table> {
+        let columns: [Column<'_, &Self>; 5] = [
+            ("measure", &|b| titled(&b.measure, &b.case)),
+            ("worst case", &|b| format!("±{}", with_unit(b.worst, &b.unit))),
+            ("at t", &|b| format!("{} s", number(b.at))),
+            ("RSS", &|b| with_unit(b.sigma, &b.unit)),
+            ("at t", &|b| format!("{} s", number(b.sigma_at))),
+        ];
+        let note = "The widest of each curve, to first order; all are in bands.csv.";
+        Table::of("Bands along curves", note, &columns, bands).if_any()
+    }
+
     fn of_curve(studied: &ToleranceInputs<'_>, curve: &CurveBands) -> Option<Self> {
         let widest = |width: &dyn Fn(usize) -> f64| {
             let known = (0..curve.bands.len()).filter(|k| width(*k).is_finite());
@@ -732,129 +745,24 @@ impl ToleranceFacts {
 
     /// Further tables: metrics, contributions, limits, tolerances, failures.
     pub fn tables(&self) -> Vec<Table> {
-        let optional = |x: Option<f64>, unit: &str| x.map_or("-".into(), |x| with_unit(x, unit));
-        let worst = |e: &ExtremeFact, unit: &str| match &e.why {
-            Some(_) => "does not move".into(),
-            None => with_unit(e.exact.unwrap_or(e.best_derived()), unit),
-        };
-        let metrics = Table::of(
-            "Metrics",
-            "Mean and standard deviation (sigma) are of the sampled designs where the linear result is inaccurate. RSS is the root sum \
-             square. Worst case: with every deviation at its most unfavourable value.",
-            &[
-                ("metric", &|m: &&SpreadFact| m.titled()),
-                ("nominal", &|m| with_unit(m.nominal, &m.unit)),
-                ("mean", &|m| optional(m.best_moments()[0], &m.unit)),
-                ("sigma", &|m| optional(m.best_moments()[1], &m.unit)),
-                ("from", &|m| word_of(m.told_by).replace('_', " ")),
-                ("RSS", &|m| with_unit(m.rss, &m.unit)),
-                ("2nd order", &|m| optional(m.sigma, &m.unit)),
-                ("RSS error", &|m| m.sampled.as_ref().and_then(|s| s.rss_off).map_or("-".into(), percent)),
-                ("nonlinearity", &|m| match (m.nonlinearity, m.sigma) {
-                    (Some(part), _) => percent(part),
-                    (None, Some(_)) => "no RSS".into(),
-                    (None, None) => "not known".into(),
-                }),
-                ("minimum", &|m| worst(&m.least, &m.unit)),
-                ("maximum", &|m| worst(&m.greatest, &m.unit)),
-            ],
-            &self.metrics,
-        );
-        let few = if self.failed > 0 { " Failed designs are not included." } else { "" };
-        let quantile = |(m, s): &(&SpreadFact, &SampledFact), k: usize| with_unit(s.quantiles[k], &m.unit);
-        let sampled = Table::of(
-            "Sampled designs",
-            format!(
-                "Skewness is 0 and kurtosis 3 of a normal distribution; 99.73 % of the designs are between the quantiles 0.135 % and \
-                 99.865 %.{few}"
-            ),
-            &[
-                ("metric", &|(m, _): &(&SpreadFact, &SampledFact)| m.titled()),
-                ("mean", &|(m, s)| with_unit(s.mean, &m.unit)),
-                ("sigma", &|(m, s)| with_unit(s.sigma, &m.unit)),
-                ("skewness", &|(_, s)| rounded(s.skewness, 3)),
-                ("kurtosis", &|(_, s)| rounded(s.kurtosis, 3)),
-                ("minimum", &|r| quantile(r, 0)),
-                ("0.135 %", &|r| quantile(r, 1)),
-                ("median", &|r| quantile(r, 2)),
-                ("99.865 %", &|r| quantile(r, 3)),
-                ("maximum", &|r| quantile(r, 4)),
-            ],
-            self.metrics.iter().filter_map(|m| Some((m, m.sampled.as_ref()?))),
-        );
-        let bands = Table::of(
-            "Bands along curves",
-            "The widest of each curve, to first order; all are in bands.csv.",
-            &[
-                ("measure", &|b: &&BandFact| titled(&b.measure, &b.case)),
-                ("worst case", &|b| format!("±{}", with_unit(b.worst, &b.unit))),
-                ("at t", &|b| format!("{} s", number(b.at))),
-                ("RSS", &|b| with_unit(b.sigma, &b.unit)),
-                ("at t", &|b| format!("{} s", number(b.sigma_at))),
-            ],
-            &self.bands,
-        );
-        let mut tables = if self.metrics.is_empty() { Vec::new() } else { vec![metrics] };
-        tables.extend(bands.if_any());
-        tables.extend(sampled.if_any());
-        for m in &self.metrics {
-            let listed = m.contributions.iter().filter(|c| c.share.abs() >= SLIGHT);
-            let together = m.together.filter(|part| *part >= SLIGHT).map(|part| ("interactions", part));
-            let note = match m.told_by {
-                SpreadModel::Linear => "",
-                SpreadModel::SecondOrder => "From first and second derivatives.",
-                SpreadModel::Sampled => {
-                    "From the sampled designs: the variance of the mean at given deviations of each variable."
-                }
-            };
-            let contributions = Table::of(
-                format!("Contributions to {}", m.titled()),
-                note,
-                &[
-                    ("variable", &|c: &(&str, f64)| c.0.to_owned()),
-                    ("of the variance", &|c| percent(c.1)),
-                    ("", &|c| bar(c.1)),
-                ],
-                listed.map(|c| (c.variable.as_str(), c.share)).chain(together),
-            );
-            tables.extend(contributions.if_any());
-        }
-        let limits = Table::of(
-            "Limits",
-            "Yield: fraction of the sampled designs, and of a normal distribution with the moments.",
-            &[
-                ("limit", &|l: &&YieldFact| l.titled()),
-                ("at least", &|l| optional(l.min, &l.unit)),
-                ("at most", &|l| optional(l.max, &l.unit)),
-                ("sampled", &|l| l.sampled.zip(l.error).map_or("-".into(), |(p, e)| yield_text(p, e))),
-                ("by moments", &|l| l.by_moments.map_or("-".into(), percent)),
-            ],
-            &self.limits,
-        );
-        tables.extend(limits.if_any());
-        let loosest = |v: &ToleratedFact| match (&self.allocation, v.end) {
-            (None, _) => String::new(),
-            (Some(_), None) => "any".into(),
-            (Some(_), Some(x)) => format!("±{}", with_unit(x, &v.unit)),
-        };
-        let variables = Table::of(
-            "Variables",
-            "",
-            &[
-                ("variable", &|v: &&ToleratedFact| v.name.clone()),
-                ("point", &|v| if v.tolerance == v.name { String::new() } else { v.tolerance.clone() }),
-                ("tolerance", &|v| format!("±{}", with_unit(v.start, &v.unit))),
-                ("distribution", &|v| v.distribution.to_owned()),
-                ("sigma", &|v| with_unit(v.sigma, &v.unit)),
-                ("cost", &|v| v.cost.map_or(String::new(), number)),
-                ("loosest", &|v| loosest(v)),
-            ],
-            &self.variables,
-        );
-        tables.push(variables.without_empty_columns());
+        let spread = [
+            SpreadFact::table(&self.metrics),
+            BandFact::table(&self.bands),
+            SampledFact::table(&self.metrics, self.failed > 0),
+        ];
+        let contributions = self.metrics.iter().map(SpreadFact::contributions_table);
+        let limits = YieldFact::table(&self.limits);
+        let mut tables: Vec<Table> =
+            spread.into_iter().chain(contributions).chain([limits]).flatten().collect();
+        tables.push(ToleratedFact::table(&self.variables, self.allocation.is_some()));
         tables.extend(FailureFact::table(&self.failures, ""));
         tables
     }
+}
+
+/// Value with its unit, or a dash if it is not known.
+fn optional(x: Option<f64>, unit: &str) -> String {
+    x.map_or("-".into(), |x| with_unit(x, unit))
 }
 
 /// Word for a model of the spread, in JSON and tables.
@@ -871,6 +779,48 @@ fn as_word<S: Serializer>(model: &SpreadModel, serializer: S) -> Result<S::Ok, S
 }
 
 impl SpreadFact {
+    /// Table of the spread of metrics, if there are any.
+    fn table(metrics: &[Self]) -> Option<Table> {
+        let columns: [Column<'_, &Self>; 11] = [
+            ("metric", &|m| m.titled()),
+            ("nominal", &|m| with_unit(m.nominal, &m.unit)),
+            ("mean", &|m| optional(m.best_moments()[0], &m.unit)),
+            ("sigma", &|m| optional(m.best_moments()[1], &m.unit)),
+            ("from", &|m| word_of(m.told_by).replace('_', " ")),
+            ("RSS", &|m| with_unit(m.rss, &m.unit)),
+            ("2nd order", &|m| optional(m.sigma, &m.unit)),
+            ("RSS error", &|m| m.sampled.as_ref().and_then(|s| s.rss_off).map_or("-".into(), percent)),
+            ("nonlinearity", &|m| match (m.nonlinearity, m.sigma) {
+                (Some(part), _) => percent(part),
+                (None, Some(_)) => "no RSS".into(),
+                (None, None) => "not known".into(),
+            }),
+            ("minimum", &|m| m.least.cell(&m.unit)),
+            ("maximum", &|m| m.greatest.cell(&m.unit)),
+        ];
+        let note = "Mean and standard deviation (sigma) are of the sampled designs where the linear result is \
+                    inaccurate. RSS is the root sum square. Worst case: with every deviation at its most unfavourable \
+                    value.";
+        Table::of("Metrics", note, &columns, metrics).if_any()
+    }
+
+    /// Table of the contributions of variables to the variance, if there are any.
+    fn contributions_table(&self) -> Option<Table> {
+        let listed = self.contributions.iter().filter(|c| c.share.abs() >= SLIGHT);
+        let together = self.together.filter(|part| *part >= SLIGHT).map(|part| ("interactions", part));
+        let note = match self.told_by {
+            SpreadModel::Linear => "",
+            SpreadModel::SecondOrder => "From first and second derivatives.",
+            SpreadModel::Sampled => {
+                "From the sampled designs: the variance of the mean at given deviations of each variable."
+            }
+        };
+        let columns: [Column<'_, (&str, f64)>; 3] =
+            [("variable", &|c| c.0.to_owned()), ("of the variance", &|c| percent(c.1)), ("", &|c| bar(c.1))];
+        let rows = listed.map(|c| (c.variable.as_str(), c.share)).chain(together);
+        Table::of(format!("Contributions to {}", self.titled()), note, &columns, rows).if_any()
+    }
+
     /// Mean and standard deviation by the model of the spread.
     fn best_moments(&self) -> [Option<f64>; 2] {
         match (self.told_by, &self.sampled) {
@@ -889,7 +839,61 @@ impl SpreadFact {
     }
 }
 
+impl SampledFact {
+    /// Table of the moments and quantiles of the sampled metrics, if there are any.
+    fn table(metrics: &[SpreadFact], has_failures: bool) -> Option<Table> {
+        let quantile = |(m, s): &(&SpreadFact, &Self), k: usize| with_unit(s.quantiles[k], &m.unit);
+        let columns: [Column<'_, (&SpreadFact, &Self)>; 10] = [
+            ("metric", &|(m, _)| m.titled()),
+            ("mean", &|(m, s)| with_unit(s.mean, &m.unit)),
+            ("sigma", &|(m, s)| with_unit(s.sigma, &m.unit)),
+            ("skewness", &|(_, s)| rounded(s.skewness, 3)),
+            ("kurtosis", &|(_, s)| rounded(s.kurtosis, 3)),
+            ("minimum", &|r| quantile(r, 0)),
+            ("0.135 %", &|r| quantile(r, 1)),
+            ("median", &|r| quantile(r, 2)),
+            ("99.865 %", &|r| quantile(r, 3)),
+            ("maximum", &|r| quantile(r, 4)),
+        ];
+        let few = if has_failures { " Failed designs are not included." } else { "" };
+        let note = format!(
+            "Skewness is 0 and kurtosis 3 of a normal distribution; 99.73 % of the designs are between the quantiles \
+             0.135 % and 99.865 %.{few}"
+        );
+        let sampled = metrics.iter().filter_map(|m| Some((m, m.sampled.as_ref()?)));
+        Table::of("Sampled designs", note, &columns, sampled).if_any()
+    }
+}
+
+impl ToleratedFact {
+    /// Table of the variables with their tolerances, and the loosest ones if they are allocated.
+    fn table(variables: &[Self], is_allocated: bool) -> Table {
+        let columns: [Column<'_, &Self>; 7] = [
+            ("variable", &|v| v.name.clone()),
+            ("point", &|v| if v.tolerance == v.name { String::new() } else { v.tolerance.clone() }),
+            ("tolerance", &|v| format!("±{}", with_unit(v.start, &v.unit))),
+            ("distribution", &|v| v.distribution.to_owned()),
+            ("sigma", &|v| with_unit(v.sigma, &v.unit)),
+            ("cost", &|v| v.cost.map_or(String::new(), number)),
+            ("loosest", &|v| match v.end {
+                _ if !is_allocated => String::new(),
+                None => "any".into(),
+                Some(end) => format!("±{}", with_unit(end, &v.unit)),
+            }),
+        ];
+        Table::of("Variables", "", &columns, variables).without_empty_columns()
+    }
+}
+
 impl ExtremeFact {
+    /// Value in a cell of a table.
+    fn cell(&self, unit: &str) -> String {
+        match &self.why {
+            Some(_) => "does not move".into(),
+            None => with_unit(self.exact.unwrap_or(self.best_derived()), unit),
+        }
+    }
+
     /// Value from derivatives: second-order if it is known.
     fn best_derived(&self) -> f64 {
         self.second.unwrap_or(self.first)
@@ -897,6 +901,19 @@ impl ExtremeFact {
 }
 
 impl YieldFact {
+    /// Table of the yields of limits, if there are any.
+    fn table(limits: &[Self]) -> Option<Table> {
+        let columns: [Column<'_, &Self>; 5] = [
+            ("limit", &|l| l.titled()),
+            ("at least", &|l| optional(l.min, &l.unit)),
+            ("at most", &|l| optional(l.max, &l.unit)),
+            ("sampled", &|l| l.sampled.zip(l.error).map_or("-".into(), |(p, e)| yield_text(p, e))),
+            ("by moments", &|l| l.by_moments.map_or("-".into(), percent)),
+        ];
+        let note = "Yield: fraction of the sampled designs, and of a normal distribution with the moments.";
+        Table::of("Limits", note, &columns, limits).if_any()
+    }
+
     fn titled(&self) -> String {
         titled(&self.name, &self.case)
     }
