@@ -4,7 +4,7 @@ use crate::constraint::Row;
 use crate::draft::{DirectionDraft, JointDraft, Section};
 use crate::joint;
 use crate::joint::{JointType, Need};
-use crate::model::{Curve, Direction, GROUND, Hardpoint, HardpointId, Joint, JointId};
+use crate::model::{BodyId, Curve, Direction, GROUND, Hardpoint, HardpointId, Joint, JointId};
 use crate::space::{Mat3, Pose, Vec3};
 
 use super::{
@@ -36,49 +36,95 @@ impl Checker<'_> {
     }
 
     fn one_joint(&mut self, j: &JointDraft, here: Here) -> Option<Joint> {
-        let name = &j.name;
-        let kind = joint::named(&j.kind).or_else(|| {
+        let kind = self.joint_type(&j.kind, here);
+        let bodies = self.joint_bodies(j, here);
+        let kind = kind?;
+        let [axis, axis2] = self.joint_axes(j, kind, here);
+        let at = self.joint_places(j, kind, axis.map(|a| a.0), here);
+        let frames = self.joint_frames(j, kind, [axis, axis2].map(|a| a.map(|(_, u)| u)), here)?;
+        let length = self.rod_length(j, kind, here);
+        self.check_lead(j, kind, here);
+        let (axis, axis2) = (axis.map(|a| a.0), axis2.map(|a| a.0));
+        let (bodies, at) = (bodies?, at?);
+        let curve = self.curve(j, kind, at, frames[0], here);
+        if let (Some(curve), Some(_)) = (&curve, length) {
+            self.check_side(j, curve, at, frames[0], here);
+        }
+        if j.axis.is_some() && axis.is_none() || j.axis2.is_some() && axis2.is_none() {
+            return None;
+        }
+        let (name, cut) = (j.name.clone(), j.cut);
+        Some(Joint { name, kind, bodies, at, axis, axis2, frames, length, curve, cut, unnamed: false })
+    }
+
+    /// Returns the joint type of this name or alias.
+    fn joint_type(&mut self, written: &str, here: Here) -> Option<&'static JointType> {
+        joint::named(written).or_else(|| {
             let names =
                 joint::ALL.iter().flat_map(|t| std::iter::once(t.name).chain(t.aliases.iter().copied()));
-            self.find("joint type", &j.kind, here.key("type"), names);
+            self.find("joint type", written, here.key("type"), names);
             None
-        });
+        })
+    }
+
+    /// HP0207: a joint that connects a body with itself.
+    fn joint_bodies(&mut self, j: &JointDraft, here: Here) -> Option<[BodyId; 2]> {
         let body_i = self.body(&j.bodies[0], here.item("bodies", 0));
         let body_j = self.body(&j.bodies[1], here.item("bodies", 1));
         if body_i.is_some() && body_i == body_j {
-            let message = format!("joint `{name}` connects body `{}` with itself", j.bodies[0]);
+            let message = format!("joint `{}` connects body `{}` with itself", j.name, j.bodies[0]);
             self.fault("HP0207", here.key("bodies"), message)
                 .help("name two different bodies, or `ground` for one");
         }
-        let kind = kind?;
-        let [axis, axis2] =
-            [(&j.axis, kind.axis, "axis"), (&j.axis2, kind.axis2, "axis2")].map(|(line, need, key)| {
-                match (line, need) {
-                    (Some(line), Need::Required | Need::Optional | Need::OnBodyJ | Need::Orienting) => {
-                        self.line(line, name, here, key)
-                    }
-                    (None, Need::Optional | Need::Orienting | Need::Unused) => None,
-                    (None, _) if self.unread(here, key) => None,
-                    (None, Need::Required | Need::OnBodyJ) => {
-                        let message = format!("joint `{name}` has no `{key}`");
-                        self.fault("HP0208", here.key("type"), message)
+        Some([body_i?, body_j?])
+    }
+
+    /// Returns the axes with their unit vectors. HP0208: an axis that is missing or does not apply to the joint type.
+    fn joint_axes(
+        &mut self,
+        j: &JointDraft,
+        kind: &'static JointType,
+        here: Here,
+    ) -> [Option<(Direction, Vec3)>; 2] {
+        let name = &j.name;
+        [(&j.axis, kind.axis, "axis"), (&j.axis2, kind.axis2, "axis2")].map(|(line, need, key)| {
+            match (line, need) {
+                (Some(line), Need::Required | Need::Optional | Need::OnBodyJ | Need::Orienting) => {
+                    self.line(line, name, here, key)
+                }
+                (None, Need::Optional | Need::Orienting | Need::Unused) => None,
+                (None, _) if self.unread(here, key) => None,
+                (None, Need::Required | Need::OnBodyJ) => {
+                    let message = format!("joint `{name}` has no `{key}`");
+                    self.fault("HP0208", here.key("type"), message)
                         .note(format!("{}: {}", kind.name, kind.summary))
                         .help(format!(
                             "add a direction, like `{key} = [0, 0, 1]`, or let it pass through two hardpoints"
                         ));
-                        None
-                    }
-                    (Some(_), Need::Unused) => {
-                        let message = format!("`{key}` does not apply to {} joints", kind.name);
-                        self.fault("HP0208", here.key(key), message)
-                            .help(format!("remove `{key}` from `{name}`"));
-                        None
-                    }
+                    None
                 }
-            });
-        let at = self.joint_places(j, kind, axis.map(|a| a.0), here);
-        let frames = match (axis, axis2) {
-            (Some((_, z)), Some((_, z_j))) if kind.axis2 == Need::OnBodyJ => {
+                (Some(_), Need::Unused) => {
+                    let message = format!("`{key}` does not apply to {} joints", kind.name);
+                    self.fault("HP0208", here.key(key), message)
+                        .help(format!("remove `{key}` from `{name}`"));
+                    None
+                }
+            }
+        })
+    }
+
+    /// Returns the frames of both markers. HP0209: axes that are parallel or not perpendicular. HP0208: a second axis
+    /// without the first.
+    fn joint_frames(
+        &mut self,
+        j: &JointDraft,
+        kind: &'static JointType,
+        [axis, axis2]: [Option<Vec3>; 2],
+        here: Here,
+    ) -> Option<[Mat3; 2]> {
+        let name = &j.name;
+        Some(match (axis, axis2) {
+            (Some(z), Some(z_j)) if kind.axis2 == Need::OnBodyJ => {
                 let cosine = z.dot(z_j);
                 if kind.rows.contains(&Row::Cosine) && cosine.abs() > 1.0 - PERPENDICULAR_TOLERANCE {
                     let message = format!(
@@ -98,7 +144,7 @@ impl Checker<'_> {
                 let i = frame_along(z, default_x(z, j.mirror));
                 [i, Mat3::between(z, z_j) * i]
             }
-            (Some((_, z)), Some((_, x))) => {
+            (Some(z), Some(x)) => {
                 let is_orienting = kind.axis2 == Need::Orienting;
                 if is_orienting && z.cross(x).norm() <= PERPENDICULAR_TOLERANCE {
                     let message = format!("the axes of joint `{name}` are parallel to each other");
@@ -113,7 +159,7 @@ impl Checker<'_> {
                 }
                 [frame_along(z, (x - z * z.dot(x)).unit()?); 2]
             }
-            (Some((_, z)), None) => [frame_along(z, default_x(z, j.mirror)); 2],
+            (Some(z), None) => [frame_along(z, default_x(z, j.mirror)); 2],
             (None, _) => {
                 let is_missing = j.axis.is_none() && !self.unread(here, "axis");
                 if is_missing && j.axis2.is_some() && kind.axis == Need::Orienting {
@@ -123,21 +169,7 @@ impl Checker<'_> {
                 }
                 [Mat3::IDENTITY; 2]
             }
-        };
-        let length = self.rod_length(j, kind, here);
-        self.check_lead(j, kind, here);
-        let (axis, axis2) = (axis.map(|a| a.0), axis2.map(|a| a.0));
-        let bodies = [body_i?, body_j?];
-        let (name, cut) = (name.clone(), j.cut);
-        let at = at?;
-        let curve = self.curve(j, kind, at, frames[0], here);
-        if let (Some(curve), Some(_)) = (&curve, length) {
-            self.check_side(j, curve, at, frames[0], here);
-        }
-        if j.axis.is_some() && axis.is_none() || j.axis2.is_some() && axis2.is_none() {
-            return None;
-        }
-        Some(Joint { name, kind, bodies, at, axis, axis2, frames, length, curve, cut, unnamed: false })
+        })
     }
 
     /// HP0226: a curve that is missing, does not apply to the joint type, or is invalid in the plane perpendicular to
