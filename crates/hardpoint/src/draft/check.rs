@@ -209,89 +209,81 @@ fn is_known(h: HardpointId, unknown_sources: &BTreeSet<Source>) -> bool {
     unknown_sources.is_empty() || (0..3).all(|axis| !unknown_sources.contains(&Source::Coordinate(h, axis)))
 }
 
+/// Returns the model of a draft before its entries are added: ground, the hardpoints, and the settings.
+fn empty_model(draft: &Draft) -> Model {
+    Model {
+        name: draft.name.clone(),
+        parameters: Vec::new(),
+        formulas: Vec::new(),
+        hardpoints: draft
+            .hardpoints
+            .iter()
+            .map(|h| Hardpoint { name: h.name.clone(), position: h.position, unnamed: false })
+            .collect(),
+        bodies: vec![Body { name: "ground".into(), frame: Pose::IDENTITY }],
+        joints: Vec::new(),
+        couplers: Vec::new(),
+        drivers: Vec::new(),
+        start: Vec::new(),
+        variables: Vec::new(),
+        points: Vec::new(),
+        vehicle: draft.vehicle.clone(),
+        wheels: Vec::new(),
+        axles: Vec::new(),
+        shapes: Vec::new(),
+        clearances: Vec::new(),
+        elements: Vec::new(),
+        numbers: Vec::new(),
+        gravity: draft.gravity,
+        load_mode: draft.load_mode,
+        equilibrium: None,
+        measures: Vec::new(),
+        joint_limits: Vec::new(),
+        metrics: Vec::new(),
+        idle: Vec::new(),
+        times: draft.times.clone(),
+        at_change_points: draft.at_change_points,
+        cases: Vec::new(),
+        grids: Vec::new(),
+        optimization: None,
+        tolerancing: None,
+        sweeping: None,
+        calibrating: None,
+        plots: Vec::new(),
+        designs: Vec::new(),
+    }
+}
+
+/// Returns the index of each name, by kind of entry.
+fn numbers_of(draft: &Draft) -> HashMap<&'static str, HashMap<&str, usize>> {
+    let ground = ["ground"].into_iter();
+    HashMap::from([
+        ("body", numbered(ground.chain(draft.bodies.iter().map(|b| b.name.as_str())))),
+        ("parameter", numbered(draft.parameters.iter().map(|p| p.name.as_str()))),
+        ("hardpoint", numbered(draft.hardpoints.iter().map(|h| h.name.as_str()))),
+        ("joint", numbered(draft.joints.iter().map(|j| j.name.as_str()))),
+        ("point", numbered(draft.points.iter().map(|p| p.name.as_str()))),
+        ("driver", numbered(draft.drivers.iter().map(|d| d.name.as_str()))),
+        ("shape", numbered(draft.shapes.iter().map(|s| s.name.as_str()))),
+        ("clearance", numbered(draft.clearances.iter().map(|c| c.name.as_str()))),
+        ("mass", numbered(draft.masses.iter().map(|m| m.name.as_str()))),
+        ("force", numbered(draft.forces.iter().map(|f| f.name.as_str()))),
+        ("measure", numbered(draft.measures.iter().map(|m| m.name.as_str()))),
+        ("metric", numbered(draft.metrics.iter().map(|m| m.name.as_str()))),
+        ("case", numbered(draft.cases.iter().map(|c| c.name.as_str()))),
+        ("design variable", numbered(draft.design.iter().map(|v| v.name.as_str()))),
+    ])
+}
+
 impl<'a> Checker<'a> {
     fn new(draft: &'a Draft) -> Self {
-        let model = Model {
-            name: draft.name.clone(),
-            parameters: Vec::new(),
-            formulas: Vec::new(),
-            hardpoints: draft
-                .hardpoints
-                .iter()
-                .map(|h| Hardpoint { name: h.name.clone(), position: h.position, unnamed: false })
-                .collect(),
-            bodies: vec![Body { name: "ground".into(), frame: Pose::IDENTITY }],
-            joints: Vec::new(),
-            couplers: Vec::new(),
-            drivers: Vec::new(),
-            start: Vec::new(),
-            variables: Vec::new(),
-            points: Vec::new(),
-            vehicle: draft.vehicle.clone(),
-            wheels: Vec::new(),
-            axles: Vec::new(),
-            shapes: Vec::new(),
-            clearances: Vec::new(),
-            elements: Vec::new(),
-            numbers: Vec::new(),
-            gravity: draft.gravity,
-            load_mode: draft.load_mode,
-            equilibrium: None,
-            measures: Vec::new(),
-            joint_limits: Vec::new(),
-            metrics: Vec::new(),
-            idle: Vec::new(),
-            times: draft.times.clone(),
-            at_change_points: draft.at_change_points,
-            cases: Vec::new(),
-            grids: Vec::new(),
-            optimization: None,
-            tolerancing: None,
-            sweeping: None,
-            calibrating: None,
-            plots: Vec::new(),
-            designs: Vec::new(),
-        };
-        let ground = ["ground"].into_iter();
-        let numbers = HashMap::from([
-            ("body", numbered(ground.chain(draft.bodies.iter().map(|b| b.name.as_str())))),
-            ("parameter", numbered(draft.parameters.iter().map(|p| p.name.as_str()))),
-            ("hardpoint", numbered(draft.hardpoints.iter().map(|h| h.name.as_str()))),
-            ("joint", numbered(draft.joints.iter().map(|j| j.name.as_str()))),
-            ("point", numbered(draft.points.iter().map(|p| p.name.as_str()))),
-            ("driver", numbered(draft.drivers.iter().map(|d| d.name.as_str()))),
-            ("shape", numbered(draft.shapes.iter().map(|s| s.name.as_str()))),
-            ("clearance", numbered(draft.clearances.iter().map(|c| c.name.as_str()))),
-            ("mass", numbered(draft.masses.iter().map(|m| m.name.as_str()))),
-            ("force", numbered(draft.forces.iter().map(|f| f.name.as_str()))),
-            ("measure", numbered(draft.measures.iter().map(|m| m.name.as_str()))),
-            ("metric", numbered(draft.metrics.iter().map(|m| m.name.as_str()))),
-            ("case", numbered(draft.cases.iter().map(|c| c.name.as_str()))),
-            ("design variable", numbered(draft.design.iter().map(|v| v.name.as_str()))),
-        ]);
+        let model = empty_model(draft);
         let extent = extent_of_joints(draft, &model.hardpoints, &BTreeSet::new());
-        let (faults, joint_ids) = (Vec::new(), Vec::new());
-        let (mut length_formulas, mut law_formulas) = (HashMap::new(), HashMap::new());
-        let mut case_formulas: HashMap<_, Vec<_>> = HashMap::new();
-        for f in &draft.formulas {
-            match &f.of {
-                FormulaOf::Length(joint) => drop(length_formulas.insert(joint.as_str(), &f.expression)),
-                FormulaOf::Law(driver, parameter) => {
-                    let list: &mut Vec<_> = law_formulas.entry(driver.as_str()).or_default();
-                    list.push((parameter.as_str(), &f.expression));
-                }
-                FormulaOf::CaseLaw(case, driver, parameter) => {
-                    let list = case_formulas.entry((case.as_str(), driver.as_str())).or_default();
-                    list.push((parameter.as_str(), &f.expression));
-                }
-                FormulaOf::Parameter(_) | FormulaOf::Coordinate(..) => {}
-            }
-        }
-        Self {
+        let mut checker = Self {
             draft,
             model,
-            faults,
-            joint_ids,
+            faults: Vec::new(),
+            joint_ids: Vec::new(),
             driver_ids: Vec::new(),
             wheel_ids: Vec::new(),
             axle_ids: Vec::new(),
@@ -301,14 +293,35 @@ impl<'a> Checker<'a> {
             curve_points: Vec::new(),
             written: Vec::new(),
             unknown_sources: BTreeSet::new(),
-            length_formulas,
-            law_formulas,
-            case_formulas,
-            numbers,
+            length_formulas: HashMap::new(),
+            law_formulas: HashMap::new(),
+            case_formulas: HashMap::new(),
+            numbers: numbers_of(draft),
             driver_of: HashMap::new(),
             zeros: HashMap::new(),
             comparisons: COMPARISONS,
             extent,
+        };
+        checker.index_formulas();
+        checker
+    }
+
+    /// Files the formulas of lengths and laws by the names of what they define.
+    fn index_formulas(&mut self) {
+        for f in &self.draft.formulas {
+            match &f.of {
+                FormulaOf::Length(joint) => {
+                    self.length_formulas.insert(joint, &f.expression);
+                }
+                FormulaOf::Law(driver, parameter) => {
+                    self.law_formulas.entry(driver).or_default().push((parameter, &f.expression));
+                }
+                FormulaOf::CaseLaw(case, driver, parameter) => {
+                    let list = self.case_formulas.entry((case, driver)).or_default();
+                    list.push((parameter, &f.expression));
+                }
+                FormulaOf::Parameter(_) | FormulaOf::Coordinate(..) => {}
+            }
         }
     }
 
