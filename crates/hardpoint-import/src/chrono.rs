@@ -4,7 +4,7 @@
 use hardpoint::space::Vec3;
 
 use crate::chrono_part::{self, Masses};
-use crate::corner::{Corner, Link, Mount, Role, plain, spin_axis};
+use crate::corner::{Corner, LOWER_ARM, Link, Mount, Role, TIE_ROD, UPPER_ARM, plain, spin_axis};
 use crate::mechanism::Mechanism;
 use crate::report::ImportLog;
 use crate::tree::{self, Tree};
@@ -37,6 +37,18 @@ const GENERIC: &str = "GenericWheeledSuspension";
 /// Keys of the static wheel angles.
 const ANGLES: [&str; 2] = ["Camber Angle (deg)", "Toe Angle (deg)"];
 
+/// Locations of an arm.
+const ARM: [&str; 3] = ["Location Chassis Front", "Location Chassis Back", "Location Upright"];
+/// Ends of a strut, damper and spring, chassis first.
+const STRUT: [Role; 2] = [Role::StrutTop, Role::StrutBottom];
+const DAMPER: [Role; 2] = [Role::DamperChassis, Role::DamperMoving];
+const SPRING: [Role; 2] = [Role::SpringChassis, Role::SpringMoving];
+
+/// Returns the static camber and toe, rad; 0 by default.
+fn angles(root: &Tree) -> [f64; 2] {
+    ANGLES.map(|key| root.get(key).and_then(Tree::number).unwrap_or(0.0).to_radians())
+}
+
 fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     let root = tree::json(input.text, notes)?;
     let kind = root.text_of("Type").unwrap_or_default();
@@ -62,12 +74,10 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     let title = root.text_of("Name").filter(|n| !n.trim().is_empty()).unwrap_or(input.stem);
     let mut m = Mechanism::new(title, "m", "deg");
     if *known == GENERIC {
-        let angle = |key: &str| root.get(key).and_then(Tree::number).unwrap_or(0.0).to_radians();
-        return chrono_generic::read(&root, m, ANGLES.map(angle), notes);
+        return chrono_generic::read(&root, m, angles(&root), notes);
     }
     if chrono_axle::TEMPLATES.contains(known) {
-        let angle = |key: &str| root.get(key).and_then(Tree::number).unwrap_or(0.0).to_radians();
-        return chrono_axle::read(&root, m, known, ANGLES.map(angle), notes);
+        return chrono_axle::read(&root, m, known, angles(&root), notes);
     }
     let mut reader = Reader {
         root: &root,
@@ -75,83 +85,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
         notes,
         corner: Corner { at: Some(root.at), rack: true, ..Corner::default() },
     };
-    match *known {
-        "MacPhersonStrut" => {
-            reader.arm(
-                "Control Arm",
-                [Role::LowerFront, Role::LowerRear, Role::LowerOuter],
-                &["Location Chassis Front", "Location Chassis Back", "Location Upright"],
-            );
-            // The strut of Chrono slides along its spring.
-            let strut = if root.get("Spring").is_some() { "Spring" } else { "Shock" };
-            reader.pair(strut, [Role::StrutTop, Role::StrutBottom], &["Location Upright"]);
-            if strut != "Shock" {
-                reader.pair("Shock", [Role::DamperChassis, Role::DamperMoving], &["Location Upright"]);
-                reader.corner.damper_on = Some(Mount::Upright);
-            }
-        }
-        "MultiLink" => {
-            reader.arm(
-                "Upper Arm",
-                [Role::UpperFront, Role::UpperRear, Role::UpperOuter],
-                &["Location Chassis Front", "Location Chassis Back", "Location Upright"],
-            );
-            for link in ["Lateral", "Trailing Link"] {
-                reader.link(link);
-            }
-            // Spring and shock act on the trailing link.
-            let ends = ["Location Link", "Location Upright"];
-            reader.pair("Shock", [Role::DamperChassis, Role::DamperMoving], &ends);
-            reader.pair("Spring", [Role::SpringChassis, Role::SpringMoving], &ends);
-            reader.corner.spring_on = Some(Mount::Link("trailing_link".into()));
-        }
-        "ThreeLinkIRS" => {
-            reader.point("Trailing Arm", &["Location Chassis"], Role::TrailingBall);
-            for link in ["Upper Link", "Lower Link"] {
-                reader.link(link);
-            }
-            for part in ["Shock", "Spring"] {
-                let roles = match part {
-                    "Shock" => [Role::DamperChassis, Role::DamperMoving],
-                    _ => [Role::SpringChassis, Role::SpringMoving],
-                };
-                reader.pair(part, roles, &["Location Arm"]);
-            }
-            reader.corner.spring_on = Some(Mount::Upright);
-        }
-        "SemiTrailingArm" => {
-            reader.arm(
-                "Trailing Arm",
-                [Role::TrailingA, Role::TrailingB, Role::Spindle],
-                &["Location Chassis Inner", "Location Chassis Outer", "Location Spindle"],
-            );
-            reader.corner.points.remove(&Role::Spindle);
-            reader.pair("Shock", [Role::DamperChassis, Role::DamperMoving], &["Location Arm"]);
-            reader.pair("Spring", [Role::SpringChassis, Role::SpringMoving], &["Location Arm"]);
-            reader.corner.spring_on = Some(Mount::Upright);
-        }
-        _ => {
-            let ends = ["Location Chassis Front", "Location Chassis Back", "Location Upright"];
-            reader.arm("Upper Control Arm", [Role::UpperFront, Role::UpperRear, Role::UpperOuter], &ends);
-            reader.arm("Lower Control Arm", [Role::LowerFront, Role::LowerRear, Role::LowerOuter], &ends);
-            let ends = ["Location Arm", "Location Upright"];
-            // In the reduced template, one element is both spring and shock.
-            let is_both = root.get("Spring").is_none() && root.get("Shock").is_some();
-            let shock = if is_both {
-                [Role::StrutTop, Role::StrutBottom]
-            } else {
-                [Role::DamperChassis, Role::DamperMoving]
-            };
-            reader.pair("Shock", shock, &ends);
-            reader.pair("Spring", [Role::SpringChassis, Role::SpringMoving], &ends);
-            let reduced = known.ends_with("Reduced");
-            reader.corner.spring_on = Some(if reduced { Mount::Upright } else { Mount::Lower });
-        }
-    }
-    if !["SemiTrailingArm", "ThreeLinkIRS"].contains(known) {
-        reader.pair("Tierod", [Role::TieInner, Role::TieOuter], &["Location Upright"]);
-    }
-    reader.wheel();
+    reader.members(known);
     let mut corner = reader.corner;
     let is = |role| corner.points.contains_key(&role);
     let members = match (is(Role::StrutTop), root.get("Spring").is_some()) {
@@ -169,19 +103,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     }
     if notes.problem_count() == 0 {
         masses(&root, &mut m, known, &corner, notes);
-        for (part, pivot) in ELASTIC {
-            let Some(data) = root.get(part).and_then(|p| p.get(chrono_part::BUSHING)) else { continue };
-            let joint = m.joints.iter().position(|j| j.name == pivot);
-            let found = joint.and_then(|k| Some((k, m.joints[k].through?)));
-            let Some((joint, [from, to])) = found else {
-                let why = "the part has no hinge on the chassis in the model";
-                notes.refused(chrono_part::BUSHING, part, Some(data.at), why);
-                continue;
-            };
-            // Chrono has the bushing of an arm halfway between its pivots.
-            let offset = (to - from).norm() / 2.0;
-            chrono_part::bushing(&mut m, notes, data, joint, [false, false, true], offset);
-        }
+        bushings(&root, &mut m, notes);
     }
     Some(m)
 }
@@ -222,14 +144,13 @@ fn masses(root: &Tree, m: &mut Mechanism, template: &str, corner: &Corner, notes
     let mut masses = Masses { root, m, notes, side: 1.0, suffix: "" };
     masses.on("Spindle", "upright", None, corner.spin_axis.and_then(chrono_part::spindle_axes));
     masses.on("Upright", "upright", None, None);
-    let arm = ["Location Chassis Front", "Location Chassis Back", "Location Upright"];
     for (part, body) in [
         ("Upper Control Arm", "upper_arm"),
         ("Upper Arm", "upper_arm"),
         ("Lower Control Arm", "lower_arm"),
         ("Control Arm", "lower_arm"),
     ] {
-        masses.arm(part, body, arm);
+        masses.arm(part, body, ARM);
     }
     masses.on("Strut", "strut", ends("Spring").or_else(|| ends("Shock")).map(between), None);
     if template == "SemiTrailingArm" {
@@ -258,6 +179,23 @@ fn masses(root: &Tree, m: &mut Mechanism, template: &str, corner: &Corner, notes
         masses.rod("Tierod", ["rack", "upright"], places);
     }
     robot::standard_gravity(m, notes, "a Chrono suspension");
+}
+
+/// Adds the stiffness of bushings to the hinges of arms.
+fn bushings(root: &Tree, m: &mut Mechanism, notes: &mut ImportLog) {
+    for (part, pivot) in ELASTIC {
+        let Some(data) = root.get(part).and_then(|p| p.get(chrono_part::BUSHING)) else { continue };
+        let joint = m.joints.iter().position(|j| j.name == pivot);
+        let found = joint.and_then(|k| Some((k, m.joints[k].through?)));
+        let Some((joint, [from, to])) = found else {
+            let why = "the part has no hinge on the chassis in the model";
+            notes.refused(chrono_part::BUSHING, part, Some(data.at), why);
+            continue;
+        };
+        // Chrono has the bushing of an arm halfway between its pivots.
+        let offset = (to - from).norm() / 2.0;
+        chrono_part::bushing(m, notes, data, joint, [false, false, true], offset);
+    }
 }
 
 struct Reader<'r> {
@@ -341,13 +279,74 @@ impl Reader<'_> {
         }
     }
 
+    /// Reads the points of a template by the roles they have in a corner.
+    fn members(&mut self, template: &str) {
+        match template {
+            "MacPhersonStrut" => {
+                self.arm("Control Arm", LOWER_ARM, &ARM);
+                // The strut of Chrono slides along its spring.
+                let strut = if self.root.get("Spring").is_some() { "Spring" } else { "Shock" };
+                self.pair(strut, STRUT, &["Location Upright"]);
+                if strut != "Shock" {
+                    self.pair("Shock", DAMPER, &["Location Upright"]);
+                    self.corner.damper_on = Some(Mount::Upright);
+                }
+            }
+            "MultiLink" => {
+                self.arm("Upper Arm", UPPER_ARM, &ARM);
+                for link in ["Lateral", "Trailing Link"] {
+                    self.link(link);
+                }
+                // Spring and shock act on the trailing link.
+                let ends = ["Location Link", "Location Upright"];
+                self.pair("Shock", DAMPER, &ends);
+                self.pair("Spring", SPRING, &ends);
+                self.corner.spring_on = Some(Mount::Link("trailing_link".into()));
+            }
+            "ThreeLinkIRS" => {
+                self.point("Trailing Arm", &["Location Chassis"], Role::TrailingBall);
+                for link in ["Upper Link", "Lower Link"] {
+                    self.link(link);
+                }
+                self.pair("Shock", DAMPER, &["Location Arm"]);
+                self.pair("Spring", SPRING, &["Location Arm"]);
+                self.corner.spring_on = Some(Mount::Upright);
+            }
+            "SemiTrailingArm" => {
+                self.arm(
+                    "Trailing Arm",
+                    [Role::TrailingA, Role::TrailingB, Role::Spindle],
+                    &["Location Chassis Inner", "Location Chassis Outer", "Location Spindle"],
+                );
+                self.corner.points.remove(&Role::Spindle);
+                self.pair("Shock", DAMPER, &["Location Arm"]);
+                self.pair("Spring", SPRING, &["Location Arm"]);
+                self.corner.spring_on = Some(Mount::Upright);
+            }
+            _ => {
+                self.arm("Upper Control Arm", UPPER_ARM, &ARM);
+                self.arm("Lower Control Arm", LOWER_ARM, &ARM);
+                let ends = ["Location Arm", "Location Upright"];
+                // In the reduced template, one element is both spring and shock.
+                let is_both = self.root.get("Spring").is_none() && self.root.get("Shock").is_some();
+                self.pair("Shock", if is_both { STRUT } else { DAMPER }, &ends);
+                self.pair("Spring", SPRING, &ends);
+                let reduced = template.ends_with("Reduced");
+                self.corner.spring_on = Some(if reduced { Mount::Upright } else { Mount::Lower });
+            }
+        }
+        if !["SemiTrailingArm", "ThreeLinkIRS"].contains(&template) {
+            self.pair("Tierod", TIE_ROD, &["Location Upright"]);
+        }
+        self.wheel();
+    }
+
     /// Reads the wheel centre and the spin axis: that of the spindle, along y except for the static angles.
     fn wheel(&mut self) {
         if let Some(centre) = self.location("Spindle", &["COM", "Location"]) {
             self.m.hardpoints.push(("spindle".into(), centre));
             self.corner.points.insert(Role::WheelCentre, centre);
-            let angle = |key: &str| self.root.get(key).and_then(Tree::number).unwrap_or(0.0).to_radians();
-            let [camber, toe] = ANGLES.map(angle);
+            let [camber, toe] = angles(self.root);
             let side = if centre.y < 0.0 { -1.0 } else { 1.0 };
             // Toe-in turns the outboard axis forward, camber tilts it down.
             self.corner.spin_axis = Some(spin_axis(side, camber, toe));

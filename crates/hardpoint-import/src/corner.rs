@@ -432,11 +432,11 @@ pub struct Corner {
 type Ends = [(usize, Vec3); 2];
 
 /// Front pivot, rear pivot and ball joint of the lower arm.
-const LOWER_ARM: [Role; 3] = [Role::LowerFront, Role::LowerRear, Role::LowerOuter];
+pub const LOWER_ARM: [Role; 3] = [Role::LowerFront, Role::LowerRear, Role::LowerOuter];
 /// Front pivot, rear pivot and ball joint of the upper arm.
-const UPPER_ARM: [Role; 3] = [Role::UpperFront, Role::UpperRear, Role::UpperOuter];
+pub const UPPER_ARM: [Role; 3] = [Role::UpperFront, Role::UpperRear, Role::UpperOuter];
 /// Inner and outer end of the tie rod.
-const TIE_ROD: [Role; 2] = [Role::TieInner, Role::TieOuter];
+pub const TIE_ROD: [Role; 2] = [Role::TieInner, Role::TieOuter];
 
 /// Default radius of a wheel, mm.
 const RADIUS: f64 = 330.0;
