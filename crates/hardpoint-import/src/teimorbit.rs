@@ -29,65 +29,9 @@ const COLUMNS: [&str; 5] = ["hardpoint_name", "symmetry", "x_value", "y_value", 
 
 fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     let mut m = Mechanism::new(input.stem, "mm", "deg");
-    let mut sides = [Side::default(), Side::default(), Side::default()];
-    let (mut section, mut columns) = (String::new(), COLUMNS.map(str::to_owned).to_vec());
-    let (mut start, mut block, mut has_units) = (0, None, false);
-    let mut parameters = Parameters::default();
-    let mut blocks: Vec<Block> = Vec::new();
-    let mut rows = Vec::new();
-    for whole in input.text.split_inclusive('\n') {
-        let line = whole.split(['$', '!']).next().unwrap_or_default().trim();
-        let from = start + whole.len() - whole.trim_start().len();
-        let at = SourceSpan { text: 0, start: from, end: from + line.len() };
-        start += whole.len();
-        if line.is_empty() {
-            continue;
-        }
-        if let Some(name) = line.strip_prefix('[').and_then(|l| l.split(']').next()) {
-            section = name.trim().to_ascii_uppercase();
-            match section.as_str() {
-                "HARDPOINT" => {
-                    columns = COLUMNS.map(str::to_owned).to_vec();
-                    block = block.or(Some(at));
-                }
-                "UNITS" | "MDI_HEADER" => {}
-                "PARAMETER" => columns = PARAMETERS.map(str::to_owned).to_vec(),
-                other => blocks.push(Block { name: other.to_owned(), at, values: Vec::new() }),
-            }
-            continue;
-        }
-        // `(COMMENTS)`, or `(VARIANTS)`, whose rows belong to other designs.
-        if line.starts_with('(') {
-            if ["HARDPOINT", "PARAMETER"].contains(&section.as_str()) {
-                notes.ignored(line, Some(at));
-            }
-            section = line.to_owned();
-            continue;
-        }
-        match section.as_str() {
-            "UNITS" => {
-                has_units |= unit(&mut m, line, at, notes);
-                parameters.mass_is_kg &= !is_other_mass(line);
-            }
-            "PARAMETER" | "HARDPOINT" => match line.strip_prefix('{') {
-                Some(header) => {
-                    let names = header.trim_end_matches('}').split_whitespace();
-                    columns = names.map(|n| n.to_ascii_lowercase()).collect();
-                }
-                None if section == "PARAMETER" => parameters.row(&mut m, &columns, line, at, notes),
-                None => rows.extend(row(&mut m, &mut sides, &columns, line, at, notes)),
-            },
-            _ => {
-                let value = line.split_once('=').map(|(key, value)| {
-                    (key.trim().to_ascii_uppercase(), value.trim().trim_matches(['\'', '"']).to_owned())
-                });
-                if let (Some(block), Some(value)) = (blocks.last_mut().filter(|b| b.name == section), value) {
-                    block.values.push(value);
-                }
-            }
-        }
-    }
-    let Some(block) = block else {
+    let Subsystem { sides, rows, parameters, blocks, hardpoints, has_units } =
+        Subsystem::parse(input.text, &mut m, notes);
+    let Some(block) = hardpoints else {
         notes.problem_with(
             "HP0803",
             None,
@@ -107,50 +51,27 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     );
     let end = blocks.iter().find_map(|b| end_named(b.value("MINOR_ROLE")?));
     let places = sides.each_ref().map(|side| side.places.clone());
-    let [left, right, single] = sides.map(Side::corner);
+    let corner =
+        |side: Side| Corner { at: Some(block), rack: true, radius: parameters.radius, end, ..side.corner() };
+    let [left, right, single] = sides.map(corner);
     let links = [&left, &right, &single].into_iter().flat_map(|corner| &corner.links);
     let links: BTreeSet<String> = links.map(|link| link.name.clone()).collect();
-    let mut rack = None;
-    let mut known = false;
     let mut corners = [left, right];
     for (side, corner) in corners.iter_mut().enumerate() {
         let [camber, toe] = parameters.angles[side];
         if [camber, toe] != [0.0; 2] {
             corner.spin_axis = Some(spin_axis(SIDES[side].0, camber, toe));
         }
-        (corner.suffix, corner.rack, corner.radius) = (SIDES[side].1.into(), true, parameters.radius);
-        (corner.at, corner.end) = (Some(block), end);
+        corner.suffix = SIDES[side].1.into();
     }
-    if live_axle::names_one(&places) {
-        known = live_axle::build(&mut m, notes, &places, &corners, Some(block));
-    }
-    let mut is_live_axle = known;
-    if !known {
-        for corner in corners.iter().filter(|c| !c.points.is_empty() || !c.links.is_empty()) {
-            let mut corner = corner.clone();
-            for (role, place) in &single.points {
-                corner.points.entry(*role).or_insert(*place);
-            }
-            known |= corner.build(&mut m, notes, &mut rack);
-        }
-    }
-    if !(known || single.points.is_empty() && single.links.is_empty()) {
-        let corner = Corner { at: Some(block), rack: true, radius: parameters.radius, end, ..single };
-        known = corner.build(&mut m, notes, &mut rack);
-    }
-    // Arms without ball joints are not links of an axle.
-    let has_arms = corners.iter().flat_map(|c| c.points.keys()).any(|role| role.is_of_an_arm());
-    if !known && !has_arms {
-        known = live_axle::build(&mut m, notes, &places, &corners, Some(block));
-        is_live_axle = known;
-    }
+    let topology = build(&mut m, notes, &places, &corners, &single);
     let is_on_link = |name: &str| rod_end(name).is_some_and(|(rod, _)| links.contains(rod));
     let has_role = |name: &str| role_of(name).is_some();
-    let unplaced: BTreeSet<String> = match (known, is_live_axle) {
+    let unplaced: BTreeSet<String> = match topology {
         // The names are part of the error.
-        (false, _) => BTreeSet::new(),
-        (true, true) => live_axle::unplaced(&places, has_role).into_iter().collect(),
-        (true, false) => {
+        None => BTreeSet::new(),
+        Some(Topology::LiveAxle) => live_axle::unplaced(&places, has_role).into_iter().collect(),
+        Some(Topology::Corners) => {
             let names = places.iter().flat_map(|side| &side.named).map(|(name, _)| name);
             names.filter(|name| !has_role(name) && !is_on_link(name)).cloned().collect()
         }
@@ -162,7 +83,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
             notes.taken("hardpoint", &name, Some(at));
         }
     }
-    if !known {
+    if topology.is_none() {
         m.unplaced = Some(live_axle::unplaced(&places, has_role));
         if live_axle::has_leaf_springs(&places) {
             let why = "leaf springs guide the axle by bending, which the model does not support";
@@ -171,6 +92,125 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     }
     teimorbit_blocks::read_blocks(&blocks, &mut m, parameters.mass_is_kg, notes);
     (!m.hardpoints.is_empty()).then_some(m)
+}
+
+/// Suspension that the hardpoints belong to.
+enum Topology {
+    LiveAxle,
+    Corners,
+}
+
+/// Adds a live axle or the corners, of which a single one lists hardpoints without a side. Returns `None` if the
+/// topology is unknown.
+fn build(
+    m: &mut Mechanism,
+    notes: &mut ImportLog,
+    places: &[SideHardpoints; 3],
+    corners: &[Corner; 2],
+    single: &Corner,
+) -> Option<Topology> {
+    if live_axle::names_one(places) && live_axle::build(m, notes, places, corners, single.at) {
+        return Some(Topology::LiveAxle);
+    }
+    let mut rack = None;
+    let mut is_known = false;
+    for corner in corners.iter().filter(|c| !c.points.is_empty() || !c.links.is_empty()) {
+        let mut corner = corner.clone();
+        for (role, place) in &single.points {
+            corner.points.entry(*role).or_insert(*place);
+        }
+        is_known |= corner.build(m, notes, &mut rack);
+    }
+    if !(is_known || single.points.is_empty() && single.links.is_empty()) {
+        is_known = single.build(m, notes, &mut rack);
+    }
+    if is_known {
+        return Some(Topology::Corners);
+    }
+    // Arms without ball joints are not links of an axle.
+    let has_arms = corners.iter().flat_map(|c| c.points.keys()).any(|role| role.is_of_an_arm());
+    (!has_arms && live_axle::build(m, notes, places, corners, single.at)).then_some(Topology::LiveAxle)
+}
+
+/// Contents of a subsystem file.
+#[derive(Default)]
+struct Subsystem {
+    /// Left, right and without a side.
+    sides: [Side; 3],
+    /// All rows of hardpoints.
+    rows: Vec<Row>,
+    parameters: Parameters,
+    /// Blocks other than those of hardpoints, parameters and units.
+    blocks: Vec<Block>,
+    /// Position of the first block of hardpoints.
+    hardpoints: Option<SourceSpan>,
+    /// True if the file defines the unit of length.
+    has_units: bool,
+}
+
+impl Subsystem {
+    /// Reads the blocks of a file line by line; hardpoints, variables and units are added to the mechanism.
+    fn parse(text: &str, m: &mut Mechanism, notes: &mut ImportLog) -> Self {
+        let mut subsystem = Self::default();
+        let Self { sides, rows, parameters, blocks, hardpoints, has_units } = &mut subsystem;
+        let (mut section, mut columns) = (String::new(), COLUMNS.map(str::to_owned).to_vec());
+        let mut start = 0;
+        for whole in text.split_inclusive('\n') {
+            let line = whole.split(['$', '!']).next().unwrap_or_default().trim();
+            let from = start + whole.len() - whole.trim_start().len();
+            let at = SourceSpan { text: 0, start: from, end: from + line.len() };
+            start += whole.len();
+            if line.is_empty() {
+                continue;
+            }
+            if let Some(name) = line.strip_prefix('[').and_then(|l| l.split(']').next()) {
+                section = name.trim().to_ascii_uppercase();
+                match section.as_str() {
+                    "HARDPOINT" => {
+                        columns = COLUMNS.map(str::to_owned).to_vec();
+                        *hardpoints = hardpoints.or(Some(at));
+                    }
+                    "UNITS" | "MDI_HEADER" => {}
+                    "PARAMETER" => columns = PARAMETERS.map(str::to_owned).to_vec(),
+                    other => blocks.push(Block { name: other.to_owned(), at, values: Vec::new() }),
+                }
+                continue;
+            }
+            // `(COMMENTS)`, or `(VARIANTS)`, whose rows belong to other designs.
+            if line.starts_with('(') {
+                if ["HARDPOINT", "PARAMETER"].contains(&section.as_str()) {
+                    notes.ignored(line, Some(at));
+                }
+                section = line.to_owned();
+                continue;
+            }
+            match section.as_str() {
+                "UNITS" => {
+                    *has_units |= unit(m, line, at, notes);
+                    parameters.mass_is_kg &= !is_other_mass(line);
+                }
+                "PARAMETER" | "HARDPOINT" => match line.strip_prefix('{') {
+                    Some(header) => {
+                        let names = header.trim_end_matches('}').split_whitespace();
+                        columns = names.map(|n| n.to_ascii_lowercase()).collect();
+                    }
+                    None if section == "PARAMETER" => parameters.row(m, &columns, line, at, notes),
+                    None => rows.extend(row(m, sides, &columns, line, at, notes)),
+                },
+                _ => {
+                    let value = line.split_once('=').map(|(key, value)| {
+                        (key.trim().to_ascii_uppercase(), value.trim().trim_matches(['\'', '"']).to_owned())
+                    });
+                    if let (Some(block), Some(value)) =
+                        (blocks.last_mut().filter(|b| b.name == section), value)
+                    {
+                        block.values.push(value);
+                    }
+                }
+            }
+        }
+        subsystem
+    }
 }
 
 /// Block of keys and values.
