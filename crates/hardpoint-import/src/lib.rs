@@ -58,6 +58,8 @@ mod urdf;
 mod write;
 mod xml;
 
+use hardpoint_file::Diagnostic;
+
 pub use closing::Closing;
 pub use mechanism::Mechanism;
 pub use report::{ElementOutcome, Entry, ImportErrors, ImportLog, Report, SourceLocation, SourceSpan};
@@ -223,7 +225,7 @@ fn known() -> String {
 /// HP0801 for a file of a related but unsupported kind, with the file to export instead.
 fn is_sibling(notes: &ImportLog, sibling: &siblings::Sibling) -> ImportErrors {
     let message = format!("unsupported file: {}", sibling.what);
-    notes.single_error(notes.diagnostic("HP0801", None, message).help(sibling.help))
+    file_error(notes, "HP0801", message, sibling.help)
 }
 
 /// Imports a source of a known format.
@@ -248,20 +250,7 @@ fn read_as(
 ) -> Result<ImportedModel, ImportErrors> {
     let text = if format.binary { String::new() } else { decoded(bytes) };
     let mut notes = ImportLog::new(name, &text);
-    let whole = |notes: &ImportLog, code, message: String, help: &str| {
-        Err(notes.single_error(notes.diagnostic(code, None, message).help(help)))
-    };
-    if bytes.len() > LARGEST {
-        let message = format!(
-            "the file is too large: {} MiB; at most {} MiB are read",
-            bytes.len() >> 20,
-            LARGEST >> 20
-        );
-        return whole(&notes, "HP0802", message, "export the mechanism without results");
-    }
-    if !format.binary && text.trim().is_empty() {
-        return whole(&notes, "HP0802", "the file is empty".into(), "export the mechanism again");
-    }
+    check_source(format, bytes, &text, &notes)?;
     let base = name.rsplit(['/', '\\']).next().unwrap_or(name);
     let stem = base.rsplit_once('.').map_or(base, |(stem, _)| stem);
     let stem = if stem.is_empty() { "model" } else { stem };
@@ -288,62 +277,14 @@ fn read_as(
         return Err(problems);
     }
     let Some(mut m) = mechanism else {
-        let message = format!("the file has no mechanism; it was read as {}", format.about);
-        let head = head();
-        let other = FORMATS.iter().find(|f| f.name != format.name && !f.binary && (f.recognises)(&head));
-        return match other {
-            Some(other) => {
-                let help = format!("import it with `--format {}`: it resembles {}", other.name, other.about);
-                whole(&notes, "HP0806", message, &help)
-            }
-            None if is_like_it => {
-                whole(&notes, "HP0806", message, "export the mechanism with its bodies and joints")
-            }
-            None => {
-                let d = notes.diagnostic("HP0806", None, message);
-                let d = d.note(format!("it resembles none of the known formats: {}", known()));
-                Err(notes.single_error(d.help("export the mechanism in one of these formats")))
-            }
-        };
+        return Err(no_mechanism(format, &head(), is_like_it, &notes));
     };
-    let count = m.bodies.len().max(m.joints.len() / 2);
-    if count > robot::MOST_PARTS {
-        let message = format!("the mechanism has {} bodies and {} joints", m.bodies.len(), m.joints.len());
-        let help =
-            format!("reduce it to at most {} bodies by removing parts that need not move", robot::MOST_PARTS);
-        return whole(&notes, "HP0802", message, &help);
-    }
-    let numbers = m.joints.iter().flat_map(|j| j.at.iter().chain(&j.axis).chain(&j.axis2));
-    if !numbers.chain(m.hardpoints.iter().map(|h| &h.1)).all(|v| v.is_finite()) {
-        let message = "positions of joints are not finite".to_owned();
-        return whole(&notes, "HP0804", message, "correct the coordinates in the source");
-    }
+    check_mechanism(&m, &notes)?;
     let about = report::printable(&format!("Imported from {base} ({})", format.about));
     let fault = if m.bodies.len() > 1 {
-        if is_robot {
-            finish::end_point(&mut m, &mut notes);
-        }
-        // Robot files define which frames coincide: only gaps due to few digits are closed.
-        let closed = if is_robot { FEW_DIGITS } else { f64::INFINITY };
-        let fault = finish::finish(&mut m, &mut notes, closed);
-        finish::remark_undriven(&m, &mut notes, is_robot);
-        if fault.is_none() {
-            cases::add_vehicle_cases(&mut m, &mut notes);
-        }
-        fault
+        completed(&mut m, &mut notes, is_robot)
     } else {
-        let message = "the topology is not recognised: only the hardpoints are written";
-        let help = "add bodies and joints as described in docs/file-format.md";
-        let message = notes.diagnostic("HP0807", None, message);
-        let unplaced: Vec<String> = m.unplaced.iter().flatten().map(|name| format!("`{name}`")).collect();
-        let message = match &m.unplaced {
-            Some(names) if names.is_empty() => {
-                message.note("all names are known, but a member or the wheel centre is missing")
-            }
-            Some(_) => message.note(format!("names without a known member: {}", unplaced.join(", "))),
-            None => message,
-        };
-        Some(message.help(help))
+        Some(not_recognised(&m, &notes))
     };
     let folder = options.shapes.clone().unwrap_or_else(|| format!("{stem}_meshes"));
     let files = input.shapes.files(&mut m, &shapes::file_name(&folder));
@@ -355,6 +296,96 @@ fn read_as(
         series: input.series,
         fault,
     })
+}
+
+/// HP0802: a source that is too large or empty.
+fn check_source(format: &Format, bytes: &[u8], text: &str, notes: &ImportLog) -> Result<(), ImportErrors> {
+    if bytes.len() > LARGEST {
+        let message = format!(
+            "the file is too large: {} MiB; at most {} MiB are read",
+            bytes.len() >> 20,
+            LARGEST >> 20
+        );
+        return Err(file_error(notes, "HP0802", message, "export the mechanism without results"));
+    }
+    if !format.binary && text.trim().is_empty() {
+        return Err(file_error(notes, "HP0802", "the file is empty", "export the mechanism again"));
+    }
+    Ok(())
+}
+
+/// HP0806 for a file without a mechanism, with the format that its beginning resembles.
+fn no_mechanism(format: &Format, head: &str, is_like_it: bool, notes: &ImportLog) -> ImportErrors {
+    let message = format!("the file has no mechanism; it was read as {}", format.about);
+    let other = FORMATS.iter().find(|f| f.name != format.name && !f.binary && (f.recognises)(head));
+    match other {
+        Some(other) => {
+            let help = format!("import it with `--format {}`: it resembles {}", other.name, other.about);
+            file_error(notes, "HP0806", message, &help)
+        }
+        None if is_like_it => {
+            file_error(notes, "HP0806", message, "export the mechanism with its bodies and joints")
+        }
+        None => {
+            let d = notes.diagnostic("HP0806", None, message);
+            let d = d.note(format!("it resembles none of the known formats: {}", known()));
+            notes.single_error(d.help("export the mechanism in one of these formats"))
+        }
+    }
+}
+
+/// HP0802: too many bodies or joints; HP0804: positions that are not finite.
+fn check_mechanism(m: &Mechanism, notes: &ImportLog) -> Result<(), ImportErrors> {
+    let count = m.bodies.len().max(m.joints.len() / 2);
+    if count > robot::MOST_PARTS {
+        let message = format!("the mechanism has {} bodies and {} joints", m.bodies.len(), m.joints.len());
+        let help =
+            format!("reduce it to at most {} bodies by removing parts that need not move", robot::MOST_PARTS);
+        return Err(file_error(notes, "HP0802", message, &help));
+    }
+    let numbers = m.joints.iter().flat_map(|j| j.at.iter().chain(&j.axis).chain(&j.axis2));
+    if !numbers.chain(m.hardpoints.iter().map(|h| &h.1)).all(|v| v.is_finite()) {
+        let message = "positions of joints are not finite";
+        return Err(file_error(notes, "HP0804", message, "correct the coordinates in the source"));
+    }
+    Ok(())
+}
+
+/// Completes a mechanism to a model that moves; returns the error if it does not.
+fn completed(m: &mut Mechanism, notes: &mut ImportLog, is_robot: bool) -> Option<Diagnostic> {
+    if is_robot {
+        finish::end_point(m, notes);
+    }
+    // Robot files define which frames coincide: only gaps due to few digits are closed.
+    let closed = if is_robot { FEW_DIGITS } else { f64::INFINITY };
+    let fault = finish::finish(m, notes, closed);
+    finish::remark_undriven(m, notes, is_robot);
+    if fault.is_none() {
+        cases::add_vehicle_cases(m, notes);
+    }
+    fault
+}
+
+/// HP0807: hardpoints without a known topology.
+fn not_recognised(m: &Mechanism, notes: &ImportLog) -> Diagnostic {
+    let message = "the topology is not recognised: only the hardpoints are written";
+    let message = notes.diagnostic("HP0807", None, message);
+    let message = match &m.unplaced {
+        Some(names) if names.is_empty() => {
+            message.note("all names are known, but a member or the wheel centre is missing")
+        }
+        Some(names) => {
+            let names: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+            message.note(format!("names without a known member: {}", names.join(", ")))
+        }
+        None => message,
+    };
+    message.help("add bodies and joints as described in docs/file-format.md")
+}
+
+/// Error for the file as a whole.
+fn file_error(notes: &ImportLog, code: &'static str, message: impl AsRef<str>, help: &str) -> ImportErrors {
+    notes.single_error(notes.diagnostic(code, None, message).help(help))
 }
 
 /// Decodes the text of a file: UTF-8 or UTF-16, otherwise Latin-1, as older programs write it; without a byte order
