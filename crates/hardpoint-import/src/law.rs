@@ -343,102 +343,102 @@ impl Parser<'_> {
         if REPEATED * each + x.len() * first > LONGEST {
             return Err(too_long());
         }
-        let same = |to: &str, n: usize| {
-            if x.len() == n {
-                Ok(format!("{to}({})", x.join(", ")))
-            } else {
-                Err(format!("`{name}` requires {n} arguments, not {}", x.len()))
-            }
-        };
-        // Fraction of the interval from x0 to x1 before x, limited to 0..1.
-        let gone =
-            |x: &[String]| format!("min(1, max(0, (({}) - ({}))/(({}) - ({}))))", x[0], x[1], x[3], x[1]);
-        let degrees = |inner: &str| format!("{inner}(({})*pi/180)", x.first().map_or("0", String::as_str));
-        match (name, x.len()) {
-            (
-                "sin" | "cos" | "tan" | "asin" | "acos" | "atan" | "sinh" | "cosh" | "tanh" | "exp" | "sqrt"
-                | "abs" | "log10",
-                _,
-            ) => same(name, 1),
-            ("arcsin", _) => same("asin", 1),
-            ("arccos", _) => same("acos", 1),
-            ("arctan", _) => same("atan", 1),
-            ("log" | "ln", _) => same("ln", 1),
-            ("dsin", 1) => Ok(degrees("sin")),
-            ("dcos", 1) => Ok(degrees("cos")),
-            ("dtan", 1) => Ok(degrees("tan")),
-            ("atan2" | "arctan2" | "pow" | "power", 2) => same(
-                match name {
-                    "arctan2" => "atan2",
-                    "power" => "pow",
-                    other => other,
-                },
-                2,
-            ),
-            ("min" | "max", 2) => same(name, 2),
-            ("sign", 2) => Ok(format!("if(({}) < 0, -abs({}), abs({}))", x[1], x[0], x[0])),
-            ("dim", 2) => Ok(format!("max(0, ({}) - ({}))", x[0], x[1])),
-            ("step", 5) => same("step", 5),
-            // h0 + (h1 - h0) u^3 (10 - 15 u + 6 u^2)
-            ("step5", 5) => {
-                let u = gone(x);
-                Ok(format!(
-                    "(({h0}) + (({h1}) - ({h0}))*{u}^3*(10 - 15*{u} + 6*{u}^2))",
-                    h0 = x[2],
-                    h1 = x[4]
-                ))
-            }
-            // Half a sine wave from h0 to h1.
-            ("havsin", 5) => Ok(format!(
-                "((({h0}) + ({h1}))/2 - (({h1}) - ({h0}))/2*cos(pi*{u}))",
-                h0 = x[2],
-                h1 = x[4],
-                u = gone(x)
-            )),
-            // a sin(w (x - x0) - phi) + b
-            ("shf", 5 | 6) => {
-                let b = x.get(5).map_or("0", String::as_str);
-                Ok(format!("(({})*sin(({})*(({}) - ({})) - ({})) + ({b}))", x[2], x[3], x[0], x[1], x[4]))
-            }
-            ("if", 4) => Ok(format!("if(({e}) < 0, {}, if(0 < ({e}), {}, {}))", x[1], x[3], x[2], e = x[0])),
-            // A stop below x1 and one above x2: k (x1 - x)^e and -k (x - x2)^e, each with damping and without pull
-            ("bistop", 8) => {
-                let [below, above] = [stop(x, &x[2], false, &x[4..]), stop(x, &x[3], true, &x[4..])];
-                Ok(format!("({below} - {above})"))
-            }
-            ("impact", 7) => Ok(stop(x, &x[2], false, &x[3..])),
-            // a0 + a1 (x - x0) + a2 (x - x0)^2 + ...
-            ("poly", 3..) => {
-                let term = |(k, a): (usize, &String)| match k {
-                    0 => format!("({a})"),
-                    _ => format!("({a})*(({}) - ({}))^{k}", x[0], x[1]),
-                };
-                Ok(format!("({})", x[2..].iter().enumerate().map(term).collect::<Vec<_>>().join(" + ")))
-            }
-            // a0 + sum a_k sin (or cos) (k w (x - x0))
-            ("forsin" | "forcos", 4..) => {
-                let wave = if name == "forsin" { "sin" } else { "cos" };
-                let term = |(k, a): (usize, &String)| match k {
-                    0 => format!("({a})"),
-                    _ => format!("({a})*{wave}({k}*({})*(({}) - ({})))", x[2], x[0], x[1]),
-                };
-                Ok(format!("({})", x[3..].iter().enumerate().map(term).collect::<Vec<_>>().join(" + ")))
-            }
-            // Chebyshev polynomials, expanded up to degree four.
-            ("cheby", 3..=7) => {
-                let u = format!("(({}) - ({}))", x[0], x[1]);
-                let t = [
-                    "1".to_owned(),
-                    u.clone(),
-                    format!("(2*{u}^2 - 1)"),
-                    format!("(4*{u}^3 - 3*{u})"),
-                    format!("(8*{u}^4 - 8*{u}^2 + 1)"),
-                ];
-                let terms: Vec<String> = x[2..].iter().zip(&t).map(|(a, t)| format!("({a})*{t}")).collect();
-                Ok(format!("({})", terms.join(" + ")))
-            }
-            _ => Err(format!("the function `{name}` with {} arguments has no equivalent", x.len())),
+        translated(name, x)
+    }
+}
+
+/// Returns a function call in the words of the model file: one match, as each function has one case.
+fn translated(name: &str, x: &[String]) -> Result<String, String> {
+    let same = |to: &str, n: usize| {
+        if x.len() == n {
+            Ok(format!("{to}({})", x.join(", ")))
+        } else {
+            Err(format!("`{name}` requires {n} arguments, not {}", x.len()))
         }
+    };
+    // Fraction of the interval from x0 to x1 before x, limited to 0..1.
+    let gone = |x: &[String]| format!("min(1, max(0, (({}) - ({}))/(({}) - ({}))))", x[0], x[1], x[3], x[1]);
+    let degrees = |inner: &str| format!("{inner}(({})*pi/180)", x.first().map_or("0", String::as_str));
+    match (name, x.len()) {
+        (
+            "sin" | "cos" | "tan" | "asin" | "acos" | "atan" | "sinh" | "cosh" | "tanh" | "exp" | "sqrt"
+            | "abs" | "log10",
+            _,
+        ) => same(name, 1),
+        ("arcsin", _) => same("asin", 1),
+        ("arccos", _) => same("acos", 1),
+        ("arctan", _) => same("atan", 1),
+        ("log" | "ln", _) => same("ln", 1),
+        ("dsin", 1) => Ok(degrees("sin")),
+        ("dcos", 1) => Ok(degrees("cos")),
+        ("dtan", 1) => Ok(degrees("tan")),
+        ("atan2" | "arctan2" | "pow" | "power", 2) => same(
+            match name {
+                "arctan2" => "atan2",
+                "power" => "pow",
+                other => other,
+            },
+            2,
+        ),
+        ("min" | "max", 2) => same(name, 2),
+        ("sign", 2) => Ok(format!("if(({}) < 0, -abs({}), abs({}))", x[1], x[0], x[0])),
+        ("dim", 2) => Ok(format!("max(0, ({}) - ({}))", x[0], x[1])),
+        ("step", 5) => same("step", 5),
+        // h0 + (h1 - h0) u^3 (10 - 15 u + 6 u^2)
+        ("step5", 5) => {
+            let u = gone(x);
+            Ok(format!("(({h0}) + (({h1}) - ({h0}))*{u}^3*(10 - 15*{u} + 6*{u}^2))", h0 = x[2], h1 = x[4]))
+        }
+        // Half a sine wave from h0 to h1.
+        ("havsin", 5) => Ok(format!(
+            "((({h0}) + ({h1}))/2 - (({h1}) - ({h0}))/2*cos(pi*{u}))",
+            h0 = x[2],
+            h1 = x[4],
+            u = gone(x)
+        )),
+        // a sin(w (x - x0) - phi) + b
+        ("shf", 5 | 6) => {
+            let b = x.get(5).map_or("0", String::as_str);
+            Ok(format!("(({})*sin(({})*(({}) - ({})) - ({})) + ({b}))", x[2], x[3], x[0], x[1], x[4]))
+        }
+        ("if", 4) => Ok(format!("if(({e}) < 0, {}, if(0 < ({e}), {}, {}))", x[1], x[3], x[2], e = x[0])),
+        // A stop below x1 and one above x2: k (x1 - x)^e and -k (x - x2)^e, each with damping and without pull
+        ("bistop", 8) => {
+            let [below, above] = [stop(x, &x[2], false, &x[4..]), stop(x, &x[3], true, &x[4..])];
+            Ok(format!("({below} - {above})"))
+        }
+        ("impact", 7) => Ok(stop(x, &x[2], false, &x[3..])),
+        // a0 + a1 (x - x0) + a2 (x - x0)^2 + ...
+        ("poly", 3..) => {
+            let term = |(k, a): (usize, &String)| match k {
+                0 => format!("({a})"),
+                _ => format!("({a})*(({}) - ({}))^{k}", x[0], x[1]),
+            };
+            Ok(format!("({})", x[2..].iter().enumerate().map(term).collect::<Vec<_>>().join(" + ")))
+        }
+        // a0 + sum a_k sin (or cos) (k w (x - x0))
+        ("forsin" | "forcos", 4..) => {
+            let wave = if name == "forsin" { "sin" } else { "cos" };
+            let term = |(k, a): (usize, &String)| match k {
+                0 => format!("({a})"),
+                _ => format!("({a})*{wave}({k}*({})*(({}) - ({})))", x[2], x[0], x[1]),
+            };
+            Ok(format!("({})", x[3..].iter().enumerate().map(term).collect::<Vec<_>>().join(" + ")))
+        }
+        // Chebyshev polynomials, expanded up to degree four.
+        ("cheby", 3..=7) => {
+            let u = format!("(({}) - ({}))", x[0], x[1]);
+            let t = [
+                "1".to_owned(),
+                u.clone(),
+                format!("(2*{u}^2 - 1)"),
+                format!("(4*{u}^3 - 3*{u})"),
+                format!("(8*{u}^4 - 8*{u}^2 + 1)"),
+            ];
+            let terms: Vec<String> = x[2..].iter().zip(&t).map(|(a, t)| format!("({a})*{t}")).collect();
+            Ok(format!("({})", terms.join(" + ")))
+        }
+        _ => Err(format!("the function `{name}` with {} arguments has no equivalent", x.len())),
     }
 }
 
