@@ -195,6 +195,75 @@ fn integrate_rate(
     }
 }
 
+/// Statements of the mechanism.
+const DONE: [&str; 10] =
+    ["PART", "POINT_MASS", "FLEX_BODY", "MARKER", "JOINT", "JPRIM", "MOTION", "COUPLER", "GEAR", "UNITS"];
+/// Constraints without an equivalent, with their descriptions.
+const CONSTRAINTS: [(&str, &str); 5] = [
+    ("PTCV", "a point on a curve"),
+    ("CVCV", "contact of curves"),
+    ("PTSF", "a point on a surface"),
+    ("GCON", "a constraint by an expression"),
+    ("UCON", "a constraint by a subroutine"),
+];
+/// Forces without an equivalent: equilibria and loads depend on them, motions that drivers prescribe do not.
+const FORCES: [&str; 12] = [
+    "VFORCE", "GFORCE", "VTORQUE", "MFORCE", "NFORCE", "BEAM", "FIELD", "CBUSHING", "CONTACT", "TIRE",
+    "FRICTION", "FE_LOAD",
+];
+/// Statements without effect on prescribed motions.
+const IRRELEVANT: &[&str] = &[
+    "ACCGRAV",
+    "ADAMS",
+    "GRAPHICS",
+    "REQUEST",
+    "MREQUEST",
+    "OUTPUT",
+    "RESULTS",
+    "MATRIX",
+    "ARRAY",
+    "STRING",
+    "VARIABLE",
+    "SPLINE",
+    "SFORCE",
+    "SPRINGDAMPER",
+    "BUSHING",
+    "DIFF",
+    "LSE",
+    "GSE",
+    "TFSISO",
+    "SENSOR",
+    "INTEGRATOR",
+    "EQUILIBRIUM",
+    "KINEMATICS",
+    "IC",
+    "PRINT",
+    "DEBUG",
+    "LIST",
+    "SURFACE",
+    "CURVE",
+    "PINPUT",
+    "POUTPUT",
+    "PSTATE",
+    "LINEAR",
+    "SIMULATE",
+    "PREFERENCES",
+    "POINT",
+    "PLANT_INPUT",
+    "PLANT_OUTPUT",
+    "CONTROL",
+    "VTO",
+    "VFO",
+    "REQSAVE",
+    "DYNAMICS",
+    "ROAD",
+    "FEMDATA",
+    "END",
+    "SAVE",
+    "MATERIAL",
+    "COMMAND",
+];
+
 struct Reader<'n> {
     m: Mechanism,
     notes: &'n mut ImportLog,
@@ -891,82 +960,6 @@ impl Reader<'_> {
 
     /// Reports all statements that are neither part of the mechanism nor forces.
     fn rest(&mut self, statements: &[Statement], loads: &BTreeSet<(String, String)>) {
-        const DONE: [&str; 10] = [
-            "PART",
-            "POINT_MASS",
-            "FLEX_BODY",
-            "MARKER",
-            "JOINT",
-            "JPRIM",
-            "MOTION",
-            "COUPLER",
-            "GEAR",
-            "UNITS",
-        ];
-        const CONSTRAINTS: [(&str, &str); 5] = [
-            ("PTCV", "a point on a curve"),
-            ("CVCV", "contact of curves"),
-            ("PTSF", "a point on a surface"),
-            ("GCON", "a constraint by an expression"),
-            ("UCON", "a constraint by a subroutine"),
-        ];
-        // A motion that drivers prescribe does not depend on them; equilibria and loads do.
-        const FORCES: [&str; 12] = [
-            "VFORCE", "GFORCE", "VTORQUE", "MFORCE", "NFORCE", "BEAM", "FIELD", "CBUSHING", "CONTACT",
-            "TIRE", "FRICTION", "FE_LOAD",
-        ];
-        // Statements without effect on prescribed motions.
-        const IRRELEVANT: &[&str] = &[
-            "ACCGRAV",
-            "ADAMS",
-            "GRAPHICS",
-            "REQUEST",
-            "MREQUEST",
-            "OUTPUT",
-            "RESULTS",
-            "MATRIX",
-            "ARRAY",
-            "STRING",
-            "VARIABLE",
-            "SPLINE",
-            "SFORCE",
-            "SPRINGDAMPER",
-            "BUSHING",
-            "DIFF",
-            "LSE",
-            "GSE",
-            "TFSISO",
-            "SENSOR",
-            "INTEGRATOR",
-            "EQUILIBRIUM",
-            "KINEMATICS",
-            "IC",
-            "PRINT",
-            "DEBUG",
-            "LIST",
-            "SURFACE",
-            "CURVE",
-            "PINPUT",
-            "POUTPUT",
-            "PSTATE",
-            "LINEAR",
-            "SIMULATE",
-            "PREFERENCES",
-            "POINT",
-            "PLANT_INPUT",
-            "PLANT_OUTPUT",
-            "CONTROL",
-            "VTO",
-            "VFO",
-            "REQSAVE",
-            "DYNAMICS",
-            "ROAD",
-            "FEMDATA",
-            "END",
-            "SAVE",
-            "MATERIAL",
-            "COMMAND",
-        ];
         let are_unknown: Vec<bool> = statements.iter().map(|s| self.unknown_keys(s)).collect();
         let is_read = |s: &Statement| {
             DONE.contains(&s.name.as_str()) || loads.contains(&(s.name.clone(), s.id.clone()))
