@@ -40,17 +40,7 @@ impl Line<'_> {
 }
 
 fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
-    let mut start = 0;
-    let lines: Vec<Line<'_>> = input
-        .text
-        .split_inclusive('\n')
-        .map(|whole| {
-            let text = whole.trim();
-            let from = start + whole.len() - whole.trim_start().len();
-            start += whole.len();
-            Line { text, at: SourceSpan { text: 0, start: from, end: from + text.len() } }
-        })
-        .collect();
+    let lines = lines(input.text);
     let Some(settings) = lines.iter().position(|l| l.text == "TEMP_SETTINGS") else {
         notes.problem_with(
             "HP0803",
@@ -61,27 +51,8 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
         return None;
     };
     let names = names(&lines, settings, notes)?;
-    let blocks: Vec<usize> = (0..lines.len())
-        .filter(|k| ["FRONT SUSPENSION", "REAR SUSPENSION"].contains(&lines[*k].text))
-        .collect();
-    let Some(block) = blocks.first() else {
-        let help = "save the model from Lotus again";
-        notes.problem_with(
-            "HP0803",
-            None,
-            "the block `FRONT SUSPENSION` or `REAR SUSPENSION` is missing",
-            help,
-        );
-        return None;
-    };
-    for other in &blocks[1..] {
-        notes.refused(
-            "block",
-            lines[*other].text,
-            Some(lines[*other].at),
-            "the names of the points apply to one suspension: only the first is imported",
-        );
-    }
+    let block = suspension(&lines, notes)?;
+    let heading = &lines[block];
     let (mut places, mut scalars) = (Vec::new(), Vec::new());
     for line in lines.iter().skip(block + 2) {
         match line.numbers()[..] {
@@ -94,39 +65,24 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
         let message = format!("the file has {} names of points, but {} positions", names.len(), places.len());
         notes.problem_with(
             "HP0803",
-            Some(lines[*block].at),
+            Some(heading.at),
             message,
             "write each position as a line of three numbers below the second line of the block",
         );
         return None;
     }
     let mut m = Mechanism::new(input.stem, "mm", "deg");
-    // Lotus uses x back and y right. The pivots of the arm show if a file has x forward.
     let at = |role| names.iter().position(|name| role_of(name) == Some(role)).map(|k| places[k].0);
-    let pivots = [[Role::LowerFront, Role::LowerRear], [Role::UpperFront, Role::UpperRear]];
-    let forward =
-        pivots.iter().find_map(|[front, rear]| Some(at(*front)?[0] > at(*rear)?[0])).unwrap_or(false);
+    let forward = is_forward(at);
     let why = if forward {
         "not rotated: according to the front pivots, x points forward"
     } else {
         "rotated by 180 deg about z, so that x points forward and y left"
     };
-    notes.approximated("axes", "", Some(lines[*block].at), why);
-    let radius = scalars.first().map(|(x, _)| *x).filter(|r| *r > 0.0);
-    if let Some((radius, at)) = scalars.first() {
-        notes.approximated(
-            "radius",
-            &format!("{radius}"),
-            Some(*at),
-            "the first number after the points is assumed to be the loaded radius of the wheel",
-        );
-    }
-    for (number, at) in scalars.iter().skip(1) {
-        let why = "the file does not name its meaning";
-        notes.refused("number", &format!("{number}"), Some(*at), why);
-    }
-    let end = lines[*block].text.split_whitespace().next().and_then(end_named);
-    let mut corner = Corner { at: Some(lines[*block].at), rack: true, radius, end, ..Corner::default() };
+    notes.approximated("axes", "", Some(heading.at), why);
+    let radius = radius(&scalars, notes);
+    let end = heading.text.split_whitespace().next().and_then(end_named);
+    let mut corner = Corner { at: Some(heading.at), rack: true, radius, end, ..Corner::default() };
     for (name, (place, at)) in names.iter().zip(&places) {
         if name.contains("C of G") {
             let why = "the centre of gravity has no mass in the file";
@@ -144,6 +100,65 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     let mut rack = None;
     corner.build(&mut m, notes, &mut rack);
     (!m.hardpoints.is_empty()).then_some(m)
+}
+
+/// Returns the lines of a file with their positions.
+fn lines(text: &str) -> Vec<Line<'_>> {
+    let mut start = 0;
+    text.split_inclusive('\n')
+        .map(|whole| {
+            let text = whole.trim();
+            let from = start + whole.len() - whole.trim_start().len();
+            start += whole.len();
+            Line { text, at: SourceSpan { text: 0, start: from, end: from + text.len() } }
+        })
+        .collect()
+}
+
+/// Returns the line of the first block of a suspension.
+fn suspension(lines: &[Line<'_>], notes: &mut ImportLog) -> Option<usize> {
+    let is_heading = |line: &Line<'_>| ["FRONT SUSPENSION", "REAR SUSPENSION"].contains(&line.text);
+    let mut blocks = (0..lines.len()).filter(|k| is_heading(&lines[*k]));
+    let Some(block) = blocks.next() else {
+        notes.problem_with(
+            "HP0803",
+            None,
+            "the block `FRONT SUSPENSION` or `REAR SUSPENSION` is missing",
+            "save the model from Lotus again",
+        );
+        return None;
+    };
+    for other in blocks {
+        notes.refused(
+            "block",
+            lines[other].text,
+            Some(lines[other].at),
+            "the names of the points apply to one suspension: only the first is imported",
+        );
+    }
+    Some(block)
+}
+
+/// Returns true if a file has x forward, as the pivots of an arm show. Lotus uses x back and y right.
+fn is_forward(at: impl Fn(Role) -> Option<[f64; 3]>) -> bool {
+    let pivots = [[Role::LowerFront, Role::LowerRear], [Role::UpperFront, Role::UpperRear]];
+    pivots.iter().find_map(|[front, rear]| Some(at(*front)?[0] > at(*rear)?[0])).unwrap_or(false)
+}
+
+/// Returns the radius of the wheel, the first of the numbers after the points.
+fn radius(scalars: &[(f64, SourceSpan)], notes: &mut ImportLog) -> Option<f64> {
+    let ((radius, at), others) = scalars.split_first()?;
+    notes.approximated(
+        "radius",
+        &format!("{radius}"),
+        Some(*at),
+        "the first number after the points is assumed to be the loaded radius of the wheel",
+    );
+    for (number, at) in others {
+        let why = "the file does not name its meaning";
+        notes.refused("number", &format!("{number}"), Some(*at), why);
+    }
+    Some(*radius).filter(|r| *r > 0.0)
 }
 
 /// Returns the names of the points. They follow the name of the template, the numbers of parts and points, and the
