@@ -138,42 +138,14 @@ impl<'d> Reader<'d, '_> {
             let message = format!("the joint `{name}` is defined twice");
             self.notes.problem_with("HP0803", at, message, "rename one of them");
         }
-        xml::unknown(text, joint, &name, JOINT, self.notes);
-        self.poses_of(text, joint, &name);
-        for axis in children(joint).filter(|c| ["axis", "axis2"].contains(&local(*c))) {
-            xml::unknown(text, axis, &name, AXIS, self.notes);
-            for (part, words) in OF_AXES {
-                named(axis, part).for_each(|part| xml::unknown(text, part, &name, words, self.notes));
-            }
-        }
+        self.unknown_words(text, joint, &name);
         let ends = ["parent", "child"].map(|end| self.end(joint, model, end));
         let [Some(i), Some(j)] = ends else { return };
         let Some(frame) = self.frames.get(&format!("{scope}joint {name}")).map(|f| f.pose) else { return };
         let shown = self.shown(&full).to_owned();
         let source = ElementSource { kind: "joint", name: &shown, at };
         let kind = joint.attribute("type").unwrap_or_default().trim();
-        let type_name = match kind {
-            "revolute" | "continuous" => "revolute",
-            "prismatic" => "translational",
-            "ball" => "spherical",
-            "fixed" => "fixed",
-            "screw" => "screw",
-            "universal" | "revolute2" => "universal",
-            // Drake's extension.
-            "planar" => "planar",
-            "gearbox" => return,
-            _ => {
-                let at = xml::attribute_at(text, joint, "type").or(at);
-                let help = "use revolute, continuous, prismatic, ball, universal, revolute2, screw, gearbox or fixed";
-                self.notes.problem_with(
-                    "HP0805",
-                    at,
-                    format!("`{name}` is of the unknown type `{kind}`"),
-                    help,
-                );
-                return;
-            }
-        };
+        let Some(type_name) = self.type_of(kind, &name, joint, text) else { return };
         let axis = if ["spherical", "fixed"].contains(&type_name) {
             frame.rot.cols[2]
         } else {
@@ -201,43 +173,12 @@ impl<'d> Reader<'d, '_> {
             _ => Vec::new(),
         };
         for &(key, of) in of_axes.iter().filter(|_| kind != "continuous") {
-            let Some(limit) = child(joint, key).and_then(|a| child(a, "limit")) else { continue };
-            let open = [("lower", f64::NEG_INFINITY), ("upper", f64::INFINITY)];
-            let [low, high] = open.map(|(key, open)| {
-                let Some(n) = child(limit, key) else { return Some(open) };
-                xml::bound(n.text().unwrap_or_default(), &format!("`{key}`"), xml::at(text, n), self.notes)
-            });
-            if let Some(range) = low.zip(high).and_then(|(low, high)| xml::range(low, high))
-                && let Err(why) = self.m.joints[of.joint].limit(of.name, range)
-            {
-                self.notes.refused("limit", &shown, xml::at(text, limit), why);
+            if let Some(limit) = child(joint, key).and_then(|a| child(a, "limit")) {
+                self.limit(limit, text, &shown, of);
             }
         }
         if type_name == "screw" {
-            let number_of = |reader: &mut Self, key: &'static str| {
-                let n = pitch_of(joint, key)?;
-                exactly::<1>(n.text().unwrap_or_default(), key, xml::at(text, n), reader.notes).map(|[x]| x)
-            };
-            let own = number_of(self, "screw_thread_pitch");
-            // The older key is in rad per length, with the opposite sign.
-            let older =
-                number_of(self, "thread_pitch").filter(|p| *p != 0.0).map(|p| -std::f64::consts::TAU / p);
-            let is_given =
-                ["screw_thread_pitch", "thread_pitch"].into_iter().any(|key| pitch_of(joint, key).is_some());
-            match own.or(older).filter(|p| *p != 0.0) {
-                Some(lead) => self.m.joints[number].lead = Some(lead),
-                None if !is_given => {
-                    let why = "it has no pitch: the default of SDFormat, 1 m per turn, is used";
-                    self.notes.approximated("screw_thread_pitch", &name, at, why);
-                    self.m.joints[number].lead = Some(1.0);
-                }
-                None => self.notes.problem_with(
-                    "HP0804",
-                    at,
-                    format!("the pitch of the screw `{name}` is zero"),
-                    "give it a non-zero `screw_thread_pitch`",
-                ),
-            }
+            self.screw(joint, text, &name, number);
         }
         for key in ["axis", "axis2"] {
             let of_axis = of_axes.iter().find(|(of, _)| *of == key).map(|(_, coordinate)| *coordinate);
@@ -246,6 +187,86 @@ impl<'d> Reader<'d, '_> {
         }
         if !is_series {
             self.joints.insert(full, MarkerJoint { number, kind: type_name, markers: [i, j] });
+        }
+    }
+
+    /// Reports unknown content of a joint, its poses and its axes.
+    fn unknown_words(&mut self, text: usize, joint: Node<'d, 'd>, name: &str) {
+        xml::unknown(text, joint, name, JOINT, self.notes);
+        self.poses_of(text, joint, name);
+        for axis in children(joint).filter(|c| ["axis", "axis2"].contains(&local(*c))) {
+            xml::unknown(text, axis, name, AXIS, self.notes);
+            for (part, words) in OF_AXES {
+                named(axis, part).for_each(|part| xml::unknown(text, part, name, words, self.notes));
+            }
+        }
+    }
+
+    /// Returns the joint type of the model for a type of SDFormat. HP0805: an unknown type. A gearbox is no joint.
+    fn type_of(&mut self, kind: &str, name: &str, joint: Node<'d, 'd>, text: usize) -> Option<&'static str> {
+        Some(match kind {
+            "revolute" | "continuous" => "revolute",
+            "prismatic" => "translational",
+            "ball" => "spherical",
+            "fixed" => "fixed",
+            "screw" => "screw",
+            "universal" | "revolute2" => "universal",
+            // Drake's extension.
+            "planar" => "planar",
+            "gearbox" => return None,
+            _ => {
+                let at = xml::attribute_at(text, joint, "type").or(xml::at(text, joint));
+                let help = "use revolute, continuous, prismatic, ball, universal, revolute2, screw, gearbox or fixed";
+                self.notes.problem_with(
+                    "HP0805",
+                    at,
+                    format!("`{name}` is of the unknown type `{kind}`"),
+                    help,
+                );
+                return None;
+            }
+        })
+    }
+
+    /// Reads the limits of a coordinate.
+    fn limit(&mut self, limit: Node<'d, 'd>, text: usize, shown: &str, of: Coordinate) {
+        let open = [("lower", f64::NEG_INFINITY), ("upper", f64::INFINITY)];
+        let [low, high] = open.map(|(key, open)| {
+            let Some(n) = child(limit, key) else { return Some(open) };
+            xml::bound(n.text().unwrap_or_default(), &format!("`{key}`"), xml::at(text, n), self.notes)
+        });
+        if let Some(range) = low.zip(high).and_then(|(low, high)| xml::range(low, high))
+            && let Err(why) = self.m.joints[of.joint].limit(of.name, range)
+        {
+            self.notes.refused("limit", shown, xml::at(text, limit), why);
+        }
+    }
+
+    /// Reads the lead of a screw, which SDFormat calls pitch.
+    fn screw(&mut self, joint: Node<'d, 'd>, text: usize, name: &str, number: usize) {
+        let at = xml::at(text, joint);
+        let number_of = |reader: &mut Self, key: &'static str| {
+            let n = pitch_of(joint, key)?;
+            exactly::<1>(n.text().unwrap_or_default(), key, xml::at(text, n), reader.notes).map(|[x]| x)
+        };
+        let own = number_of(self, "screw_thread_pitch");
+        // The older key is in rad per length, with the opposite sign.
+        let older = number_of(self, "thread_pitch").filter(|p| *p != 0.0).map(|p| -std::f64::consts::TAU / p);
+        let is_given =
+            ["screw_thread_pitch", "thread_pitch"].into_iter().any(|key| pitch_of(joint, key).is_some());
+        match own.or(older).filter(|p| *p != 0.0) {
+            Some(lead) => self.m.joints[number].lead = Some(lead),
+            None if !is_given => {
+                let why = "it has no pitch: the default of SDFormat, 1 m per turn, is used";
+                self.notes.approximated("screw_thread_pitch", name, at, why);
+                self.m.joints[number].lead = Some(1.0);
+            }
+            None => self.notes.problem_with(
+                "HP0804",
+                at,
+                format!("the pitch of the screw `{name}` is zero"),
+                "give it a non-zero `screw_thread_pitch`",
+            ),
         }
     }
 
