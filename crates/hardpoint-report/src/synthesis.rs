@@ -165,158 +165,245 @@ impl Schedule {
 
 /// Model file of an answer, which runs by itself: the motion through all poses, and what it misses of them.
 pub fn model_text(task: &TaskFile, answer: &Answer, rank: usize) -> String {
-    let units = task.units;
-    let length = |x: f64| units.from_si(Quantity::Length, x);
-    // Coordinates that round-off leaves are zero.
-    let least = 1e-14 * answer.linkage.extent();
-    let coordinate = |x: f64| if x.abs() < least { "0".to_owned() } else { rounded(length(x), DIGITS) };
-    let place = |p: Complex| format!("[{}, {}]", coordinate(p.x), coordinate(p.y));
-    let angle = |x: f64| rounded(units.from_si(Quantity::Angle, x), DIGITS);
-    let quoted = |text: &str| serde_json::to_string(text).expect("a text is plain JSON");
-    let schedule = Schedule::of(answer);
-    let Linkage { a, b, c, guide, p } = answer.linkage;
-    let aims = match &task.aim {
-        TaskAim::Poses(poses) => count(poses.len(), "pose"),
-        TaskAim::Path { points, .. } => format!("a path of {}", count(points.len(), "point")),
-    };
-    let [unit, angle_unit] = [units.length.symbol(), units.angle.symbol()];
-    let kind = answer.kind.name();
-    let mut text = format!(
-        "# Answer {rank} of `hardpoint synthesize` for {}: a {kind} for {aims}.\n#\n\
-         #   hardpoint run FILE         the motion, its curves and sensitivities\n\
-         #   hardpoint studio FILE      change it in the browser\n\
-         #   hardpoint optimize FILE    meet changed targets as well as its joints can\n\n",
-        task.file_name().replace(char::is_control, " ")
-    );
-    let mu = with_unit(units.from_si(Quantity::Angle, answer.passage.transmission), angle_unit);
-    _ = writeln!(text, "name = {}", quoted(&format!("{} {rank}", task.name)));
-    let description = format!("A {kind} for {aims}; least transmission angle {mu}");
-    _ = writeln!(text, "description = {}", quoted(&description));
-    _ = writeln!(text, "units = {{ length = \"{unit}\", angle = \"{angle_unit}\" }}\nplanar = \"xy\"\n");
+    let model = AnswerModel::of(task, answer);
+    let sections = [
+        model.head(rank),
+        model.hardpoints(),
+        model.bodies(),
+        model.rail(),
+        model.drivers(),
+        model.points(),
+        model.measures(),
+        model.metrics(),
+        model.design(),
+        model.page(),
+        model.goals(),
+        model.time(),
+    ];
+    sections.concat()
+}
 
-    let mut fixed = vec!["A"];
-    _ = writeln!(text, "[hardpoints]\nA = {:<44} # crank on the frame", place(a));
-    _ = writeln!(text, "B = {:<44} # crank and coupler", place(b));
-    let (last, follower) = match guide {
-        Guide::Rocker(d) => {
-            _ = writeln!(text, "C = {:<44} # coupler and rocker", place(c));
-            _ = writeln!(text, "D = {:<44} # rocker on the frame", place(d));
-            fixed.push("D");
-            ("D", "rocker = [\"C\", \"D\"]")
-        }
-        Guide::Slider(_) => {
-            _ = writeln!(text, "C = {:<44} # coupler and slider", place(c));
-            ("C", "slider = [\"C\"]")
-        }
-    };
-    _ = writeln!(text, "P = {:<44} # the guided point of the coupler", place(p));
-    let direction = match &task.aim {
-        TaskAim::Poses(poses) => Some(p + Complex::unit(poses[0][2]).times(0.25 * answer.linkage.extent())),
-        TaskAim::Path { .. } => None,
-    };
-    if let Some(ahead) = direction {
-        _ = writeln!(text, "X = {:<44} # ahead of it along x of the guided body", place(ahead));
-    }
-    // The poses or points, at rest on the frame
-    let targets = targets(task);
-    for (k, target) in targets.iter().enumerate() {
-        _ = writeln!(text, "target_{} = {}", k + 1, place(at([target[0], target[1]])));
-    }
-    let listed = |names: &[String]| names.iter().map(|n| format!("\"{n}\"")).collect::<Vec<_>>().join(", ");
-    let names: Vec<String> = (1..=targets.len()).map(|k| format!("target_{k}")).collect();
-    let ground: Vec<String> = fixed.iter().map(|n| (*n).to_owned()).chain(names).collect();
-    let ahead = if direction.is_some() { ", \"X\"" } else { "" };
-    _ = write!(
-        text,
-        "\n[bodies]\nground = [{}]\ncrank = [\"A\", \"B\"]\n{COUPLER} = [\"B\", \"C\", \"P\"{ahead}]\n{follower}\n",
-        listed(&ground)
-    );
-    let normal = if let Guide::Slider(along) = guide {
-        let pair = |v: Complex| format!("[{}, {}]", rounded(v.x, DIGITS), rounded(v.y, DIGITS));
-        _ = write!(
-            text,
-            "\n[joints]\nrail = {{ type = \"translational\", bodies = [\"ground\", \"slider\"], at = \"C\", axis = {} }}\n",
-            pair(along)
-        );
-        Some(pair(along.left()))
-    } else {
-        None
-    };
-    let start = if schedule.start == 0.0 { String::new() } else { format!("{} + ", angle(schedule.start)) };
-    let per_second = if schedule.turn.abs() == TAU && angle_unit == "rad" {
-        if schedule.turn < 0.0 { "-2*pi".to_owned() } else { "2*pi".to_owned() }
-    } else {
-        angle(schedule.turn)
-    };
-    _ = write!(text, "\n[drivers]\nmotor = {{ joint = \"A\", law = \"{start}{per_second}*t\" }}\n");
-    _ = writeln!(
-        text,
-        "\n[points]\ncrank_pin = {{ body = \"{COUPLER}\", at = \"B\" }}\ncoupler_pin = {{ body = \"{COUPLER}\", at = \"C\" }}"
-    );
-    let across = match &normal {
-        None => {
-            _ = writeln!(text, "pivot = {{ body = \"rocker\", at = \"{last}\" }}");
-            "[\"pivot\", \"coupler_pin\"]".to_owned()
-        }
-        Some(normal) => normal.clone(),
-    };
-    _ = writeln!(text, "\n[measures]\ncrank = {{ type = \"coordinate\", joint = \"A\" }}");
-    for axis in ["x", "y"] {
-        _ = writeln!(text, "{axis} = {{ type = \"position\", point = \"P\", along = \"{axis}\" }}");
-    }
-    if direction.is_some() {
-        _ = writeln!(text, "angle = {{ type = \"angle\", from = [1, 0], to = [\"P\", \"X\"] }}");
-    }
-    _ = writeln!(
-        text,
-        "transmission = {{ type = \"transmission_angle\", from = [\"crank_pin\", \"coupler_pin\"], to = {across} }}"
-    );
+/// The model of an answer, whose sections are written one by one.
+struct AnswerModel<'a> {
+    task: &'a TaskFile,
+    answer: &'a Answer,
+    schedule: Schedule,
+    /// The poses or points.
+    targets: Vec<[f64; 3]>,
+    /// Point ahead of the guided point along x of the guided body, if it has poses.
+    ahead: Option<Complex>,
+}
 
-    _ = writeln!(text, "\n# Distances from the targets, which are passed at these times.\n[metrics]");
-    let time = |k: usize| rounded(schedule.times[schedule.steps[k]], DIGITS);
-    let mut missed = vec![("x", 0), ("y", 1)];
-    missed.extend(direction.map(|_| ("angle", 2)));
-    for (measure, part) in &missed {
-        let value = |x: f64| if *part == 2 { angle(x) } else { rounded(length(x), DIGITS) };
-        let mut pairs: Vec<(f64, String)> = (0..targets.len())
-            .map(|k| {
-                (schedule.times[schedule.steps[k]], format!("[{}, {}]", time(k), value(targets[k][*part])))
-            })
-            .collect();
-        pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let pairs: Vec<String> = pairs.into_iter().map(|p| p.1).collect();
-        _ = writeln!(text, "missed_{measure} = {{ of = \"{measure}\", take = \"rms_at_points\", target = [");
-        pairs.iter().for_each(|pair| _ = writeln!(text, "    {pair},"));
-        text += "] }\n";
-    }
-    _ = writeln!(
-        text,
-        "least_transmission = {{ of = \"transmission\", take = \"min\" }}\n\n# What may change, for searches and sweeps.\n[design]"
-    );
-    let bound = number(length(BOUNDS * answer.linkage.extent()));
-    let mut moved = vec!["A", "B", "C", "P"];
-    moved.extend((last == "D").then_some("D"));
-    for name in moved {
-        // The direction goes with its point, so that the body turns by the pins alone.
-        let what = if name == "P" && direction.is_some() {
-            "[\"P\", \"X\"]".to_owned()
-        } else {
-            format!("\"{name}\"")
+impl<'a> AnswerModel<'a> {
+    fn of(task: &'a TaskFile, answer: &'a Answer) -> Self {
+        let linkage = &answer.linkage;
+        let ahead = match &task.aim {
+            TaskAim::Poses(poses) => {
+                Some(linkage.p + Complex::unit(poses[0][2]).times(0.25 * linkage.extent()))
+            }
+            TaskAim::Path { .. } => None,
         };
-        _ = writeln!(text, "{name} = {{ move = {what}, along = \"xy\", bounds = [-{bound}, {bound}] }}");
+        Self { task, answer, schedule: Schedule::of(answer), targets: targets(task), ahead }
     }
-    let goals: Vec<String> = missed.iter().map(|(measure, _)| format!("missed_{measure} = {{}}")).collect();
-    let crank = if direction.is_some() { ", { y = [\"angle\"], over = \"crank\" }" } else { "" };
-    _ = writeln!(
-        text,
-        "\n[page]\nplots = [{{ y = [\"x\", \"y\"], over = \"crank\" }}, {{ y = [\"transmission\"], over = \"crank\" }}{crank}]"
-    );
-    _ = writeln!(text, "\n[optimize]\ngoals = {{ {} }}\n\n[time]\nat = [", goals.join(", "));
-    for row in schedule.times.chunks(8) {
-        let row: Vec<String> = row.iter().map(|t| rounded(*t, DIGITS)).collect();
-        _ = writeln!(text, "    {},", row.join(", "));
+
+    fn length(&self, x: f64) -> f64 {
+        self.task.units.from_si(Quantity::Length, x)
     }
-    text + "]\n"
+
+    fn angle(&self, x: f64) -> String {
+        rounded(self.task.units.from_si(Quantity::Angle, x), DIGITS)
+    }
+
+    fn place(&self, p: Complex) -> String {
+        // Coordinates that round-off leaves are zero.
+        let least = 1e-14 * self.answer.linkage.extent();
+        let coordinate =
+            |x: f64| if x.abs() < least { "0".to_owned() } else { rounded(self.length(x), DIGITS) };
+        format!("[{}, {}]", coordinate(p.x), coordinate(p.y))
+    }
+
+    /// Measures that the targets give, with their columns in the targets.
+    fn missed(&self) -> impl Iterator<Item = (&'static str, usize)> {
+        [("x", 0), ("y", 1)].into_iter().chain(self.ahead.map(|_| ("angle", 2)))
+    }
+
+    fn head(&self, rank: usize) -> String {
+        let (task, kind) = (self.task, self.answer.kind.name());
+        let aims = match &task.aim {
+            TaskAim::Poses(poses) => count(poses.len(), "pose"),
+            TaskAim::Path { points, .. } => format!("a path of {}", count(points.len(), "point")),
+        };
+        let mut text = format!(
+            "# Answer {rank} of `hardpoint synthesize` for {}: a {kind} for {aims}.\n#\n\
+             #   hardpoint run FILE         the motion, its curves and sensitivities\n\
+             #   hardpoint studio FILE      change it in the browser\n\
+             #   hardpoint optimize FILE    meet changed targets as well as its joints can\n\n",
+            task.file_name().replace(char::is_control, " ")
+        );
+        let quoted = |text: &str| serde_json::to_string(text).expect("a text is plain JSON");
+        let [unit, angle_unit] = [task.units.length.symbol(), task.units.angle.symbol()];
+        let mu = with_unit(task.units.from_si(Quantity::Angle, self.answer.passage.transmission), angle_unit);
+        let description = format!("A {kind} for {aims}; least transmission angle {mu}");
+        _ = writeln!(text, "name = {}", quoted(&format!("{} {rank}", task.name)));
+        _ = writeln!(text, "description = {}", quoted(&description));
+        _ = writeln!(text, "units = {{ length = \"{unit}\", angle = \"{angle_unit}\" }}\nplanar = \"xy\"\n");
+        text
+    }
+
+    /// Joints, the guided point, and the poses or points at rest on the frame.
+    fn hardpoints(&self) -> String {
+        let Linkage { a, b, c, guide, p } = self.answer.linkage;
+        let guided = match guide {
+            Guide::Rocker(d) => {
+                vec![("C", c, "coupler and rocker"), ("D", d, "rocker on the frame")]
+            }
+            Guide::Slider(_) => vec![("C", c, "coupler and slider")],
+        };
+        let cranked = [("A", a, "crank on the frame"), ("B", b, "crank and coupler")];
+        let point = ("P", p, "the guided point of the coupler");
+        let ahead = self.ahead.map(|ahead| ("X", ahead, "ahead of it along x of the guided body"));
+        let mut text = "[hardpoints]\n".to_owned();
+        for (name, at, what) in cranked.into_iter().chain(guided).chain([point]).chain(ahead) {
+            _ = writeln!(text, "{name} = {:<44} # {what}", self.place(at));
+        }
+        for (k, [x, y, _]) in self.targets.iter().enumerate() {
+            _ = writeln!(text, "target_{} = {}", k + 1, self.place(at([*x, *y])));
+        }
+        text
+    }
+
+    fn bodies(&self) -> String {
+        let (fixed, follower) = match self.answer.linkage.guide {
+            Guide::Rocker(_) => ("\"A\", \"D\"", "rocker = [\"C\", \"D\"]"),
+            Guide::Slider(_) => ("\"A\"", "slider = [\"C\"]"),
+        };
+        let targets: String = (1..=self.targets.len()).map(|k| format!(", \"target_{k}\"")).collect();
+        let ahead = if self.ahead.is_some() { ", \"X\"" } else { "" };
+        format!(
+            "\n[bodies]\nground = [{fixed}{targets}]\ncrank = [\"A\", \"B\"]\n\
+             {COUPLER} = [\"B\", \"C\", \"P\"{ahead}]\n{follower}\n"
+        )
+    }
+
+    /// Joint of a slider.
+    fn rail(&self) -> String {
+        match self.answer.linkage.guide {
+            Guide::Rocker(_) => String::new(),
+            Guide::Slider(along) => format!(
+                "\n[joints]\nrail = {{ type = \"translational\", bodies = [\"ground\", \"slider\"], at = \"C\", axis = {} }}\n",
+                direction(along)
+            ),
+        }
+    }
+
+    fn drivers(&self) -> String {
+        let Schedule { start, turn, .. } = self.schedule;
+        let start = if start == 0.0 { String::new() } else { format!("{} + ", self.angle(start)) };
+        let per_second = if turn.abs() == TAU && self.task.units.angle.symbol() == "rad" {
+            if turn < 0.0 { "-2*pi".to_owned() } else { "2*pi".to_owned() }
+        } else {
+            self.angle(turn)
+        };
+        format!("\n[drivers]\nmotor = {{ joint = \"A\", law = \"{start}{per_second}*t\" }}\n")
+    }
+
+    fn points(&self) -> String {
+        let pivot = match self.answer.linkage.guide {
+            Guide::Rocker(_) => "pivot = { body = \"rocker\", at = \"D\" }\n",
+            Guide::Slider(_) => "",
+        };
+        format!(
+            "\n[points]\ncrank_pin = {{ body = \"{COUPLER}\", at = \"B\" }}\n\
+             coupler_pin = {{ body = \"{COUPLER}\", at = \"C\" }}\n{pivot}"
+        )
+    }
+
+    fn measures(&self) -> String {
+        let mut text = "\n[measures]\ncrank = { type = \"coordinate\", joint = \"A\" }\n".to_owned();
+        for axis in ["x", "y"] {
+            _ = writeln!(text, "{axis} = {{ type = \"position\", point = \"P\", along = \"{axis}\" }}");
+        }
+        if self.ahead.is_some() {
+            text += "angle = { type = \"angle\", from = [1, 0], to = [\"P\", \"X\"] }\n";
+        }
+        let across = match self.answer.linkage.guide {
+            Guide::Rocker(_) => "[\"pivot\", \"coupler_pin\"]".to_owned(),
+            Guide::Slider(along) => direction(along.left()),
+        };
+        _ = writeln!(
+            text,
+            "transmission = {{ type = \"transmission_angle\", from = [\"crank_pin\", \"coupler_pin\"], to = {across} }}"
+        );
+        text
+    }
+
+    fn metrics(&self) -> String {
+        let times: Vec<f64> = self.schedule.steps.iter().map(|step| self.schedule.times[*step]).collect();
+        let mut in_time: Vec<usize> = (0..self.targets.len()).collect();
+        in_time.sort_by(|i, j| times[*i].total_cmp(&times[*j]));
+        let mut text =
+            "\n# Distances from the targets, which are passed at these times.\n[metrics]\n".to_owned();
+        for (measure, part) in self.missed() {
+            let value = |x: f64| if part == 2 { self.angle(x) } else { rounded(self.length(x), DIGITS) };
+            _ = writeln!(
+                text,
+                "missed_{measure} = {{ of = \"{measure}\", take = \"rms_at_points\", target = ["
+            );
+            for k in &in_time {
+                let (time, target) = (rounded(times[*k], DIGITS), value(self.targets[*k][part]));
+                _ = writeln!(text, "    [{time}, {target}],");
+            }
+            text += "] }\n";
+        }
+        text + "least_transmission = { of = \"transmission\", take = \"min\" }\n"
+    }
+
+    fn design(&self) -> String {
+        let bound = number(self.length(BOUNDS * self.answer.linkage.extent()));
+        let rocker = match self.answer.linkage.guide {
+            Guide::Rocker(_) => Some("D"),
+            Guide::Slider(_) => None,
+        };
+        let mut text = "\n# What may change, for searches and sweeps.\n[design]\n".to_owned();
+        for name in ["A", "B", "C", "P"].into_iter().chain(rocker) {
+            // The direction goes with its point, so that the body turns by the pins alone.
+            let what = if name == "P" && self.ahead.is_some() {
+                "[\"P\", \"X\"]".to_owned()
+            } else {
+                format!("\"{name}\"")
+            };
+            _ = writeln!(text, "{name} = {{ move = {what}, along = \"xy\", bounds = [-{bound}, {bound}] }}");
+        }
+        text
+    }
+
+    fn page(&self) -> String {
+        let angle = if self.ahead.is_some() { ", { y = [\"angle\"], over = \"crank\" }" } else { "" };
+        format!(
+            "\n[page]\nplots = [{{ y = [\"x\", \"y\"], over = \"crank\" }}, \
+             {{ y = [\"transmission\"], over = \"crank\" }}{angle}]\n"
+        )
+    }
+
+    fn goals(&self) -> String {
+        let goals: Vec<String> =
+            self.missed().map(|(measure, _)| format!("missed_{measure} = {{}}")).collect();
+        format!("\n[optimize]\ngoals = {{ {} }}\n", goals.join(", "))
+    }
+
+    fn time(&self) -> String {
+        let mut text = "\n[time]\nat = [\n".to_owned();
+        for row in self.schedule.times.chunks(8) {
+            let row: Vec<String> = row.iter().map(|t| rounded(*t, DIGITS)).collect();
+            _ = writeln!(text, "    {},", row.join(", "));
+        }
+        text + "]\n"
+    }
+}
+
+/// Components of a unit vector.
+fn direction(v: Complex) -> String {
+    format!("[{}, {}]", rounded(v.x, DIGITS), rounded(v.y, DIGITS))
 }
 
 /// Picture of an answer as SVG: its links in the first pose, the path of its point, and the poses or points.
