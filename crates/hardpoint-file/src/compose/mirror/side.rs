@@ -83,23 +83,8 @@ impl<'a> Side<'_, 'a> {
             ("measures", "along") => measure.is_some_and(|t| t.vector_kind == VectorKind::Axial),
             _ => false,
         };
-        let first = |value: &Value<'a>| {
-            Some(
-                value
-                    .get_ref()
-                    .as_table()?
-                    .get("axis")?
-                    .get_ref()
-                    .as_table()?
-                    .get("through")?
-                    .get_ref()
-                    .as_array()?
-                    .first()?
-                    .clone(),
-            )
-        };
         let named = self.rule.mirror(of, value, &turns);
-        let through = first(value);
+        let through = first_of_axis(value).filter(|_| turns("axis"));
         turn_lines(value, &turns);
         let span = value.span();
         let Some(table) = table_of(value) else { return named };
@@ -108,14 +93,11 @@ impl<'a> Side<'_, 'a> {
                 self.limits(joint, table);
                 table.get_mut("lead").into_iter().for_each(|v| turn_sign(v, self.rule.numbers));
                 // It is at the first point of its axis, for both directions.
-                if let (Some(at), false) =
-                    (through.filter(|at| turns("axis") && at.get_ref().is_str()), table.contains_key("at"))
-                {
+                if let (Some(at), false) = (through, table.contains_key("at")) {
                     put(table, "at", at);
                 }
                 if !table.contains_key("axis2") {
-                    let axis = DeValue::String(Cow::Borrowed(["x", "y", "z"][self.rule.across]));
-                    put(table, "mirror", Spanned::new(span, axis));
+                    put(table, "mirror", self.axis_across(span));
                 }
             }
             "forces" => {
@@ -126,32 +108,8 @@ impl<'a> Side<'_, 'a> {
                 let by_points = table.get("frame").is_some_and(|f| is_by_points(f.get_ref().as_table()));
                 self.mesh(table, by_points);
             }
-            // The shape, and the products of inertia with the mirrored axis.
-            "masses" => {
-                let body = self.entry("masses", name).and_then(|mass| word(mass, "body"));
-                let frame = body.and_then(|body| self.entry("bodies", body)).and_then(|b| b.get("frame"));
-                self.mesh(table, is_by_points(frame.and_then(|f| f.get_ref().as_table())));
-                let products = [["ixy", "izx"], ["ixy", "iyz"], ["iyz", "izx"]][self.rule.across];
-                let found = products.into_iter().filter_map(|key| table.remove(key).map(|v| (key, v)));
-                for (key, mut product) in found.collect::<Vec<_>>() {
-                    turn_sign(&mut product, self.rule.numbers);
-                    put(table, key, product);
-                }
-            }
-            "wheels" => {
-                let ends = [("side", ["left", "right"], 1), ("end", ["front", "rear"], 0)];
-                for (key, [one, other], axis) in ends {
-                    let Some(value) = table.get_mut(key).filter(|_| self.rule.across == axis) else {
-                        continue;
-                    };
-                    let turned = match value.get_ref().as_str() {
-                        Some(w) if w == one => other,
-                        Some(w) if w == other => one,
-                        _ => continue,
-                    };
-                    *value = text(turned, value);
-                }
-            }
+            "masses" => self.mass(name, table),
+            "wheels" => self.wheel(table),
             "couplers" => self.coupler(name, table, span),
             "measures" => self.slope(name, table),
             "drivers" => {
@@ -167,8 +125,7 @@ impl<'a> Side<'_, 'a> {
                 // Its three variables are the images of those of the original.
                 let moved = table.get("move").filter(|_| word(table, "along") == Some("xyz")).cloned();
                 if let (Some(moved), false) = (moved, table.contains_key("mirror")) {
-                    let axis = DeValue::String(Cow::Borrowed(["x", "y", "z"][self.rule.across]));
-                    put(table, "mirror", Spanned::new(moved.span(), axis));
+                    put(table, "mirror", self.axis_across(moved.span()));
                     put(table, "move", Spanned::new(moved.span(), DeValue::Array(DeArray::new())));
                     put(table, "mirrored", moved);
                 }
@@ -176,6 +133,38 @@ impl<'a> Side<'_, 'a> {
             _ => {}
         }
         named
+    }
+
+    /// Name of the mirrored axis.
+    fn axis_across(&self, span: Range<usize>) -> Value<'a> {
+        Spanned::new(span, DeValue::String(Cow::Borrowed(["x", "y", "z"][self.rule.across])))
+    }
+
+    /// Mirrors the shape of a mass, and the products of inertia with the mirrored axis.
+    fn mass(&mut self, name: &str, table: &mut DeTable<'a>) {
+        let body = self.entry("masses", name).and_then(|mass| word(mass, "body"));
+        let frame = body.and_then(|body| self.entry("bodies", body)).and_then(|b| b.get("frame"));
+        self.mesh(table, is_by_points(frame.and_then(|f| f.get_ref().as_table())));
+        let products = [["ixy", "izx"], ["ixy", "iyz"], ["iyz", "izx"]][self.rule.across];
+        let found = products.into_iter().filter_map(|key| table.remove(key).map(|v| (key, v)));
+        for (key, mut product) in found.collect::<Vec<_>>() {
+            turn_sign(&mut product, self.rule.numbers);
+            put(table, key, product);
+        }
+    }
+
+    /// Moves a wheel to the other side or end of the vehicle.
+    fn wheel(&self, table: &mut DeTable<'a>) {
+        let ends = [("side", ["left", "right"], 1), ("end", ["front", "rear"], 0)];
+        for (key, [one, other], axis) in ends {
+            let Some(value) = table.get_mut(key).filter(|_| self.rule.across == axis) else { continue };
+            let turned = match value.get_ref().as_str() {
+                Some(w) if w == one => other,
+                Some(w) if w == other => one,
+                _ => continue,
+            };
+            *value = text(turned, value);
+        }
     }
 
     /// Moves drivers of a slope from `together` to `opposed` and back, where either they or its `driver` change their
@@ -657,6 +646,13 @@ fn numbers(list: &DeArray<'_>) -> Option<[f64; 3]> {
 
 fn text<'a>(text: impl Into<String>, at: &Value<'_>) -> Value<'a> {
     Spanned::new(at.span(), DeValue::String(Cow::Owned(text.into())))
+}
+
+/// First hardpoint of an axis that passes through two of them.
+fn first_of_axis<'a>(joint: &Value<'a>) -> Option<Value<'a>> {
+    let axis = joint.get_ref().as_table()?.get("axis")?;
+    let through = axis.get_ref().as_table()?.get("through")?;
+    through.get_ref().as_array()?.first().filter(|at| at.get_ref().is_str()).cloned()
 }
 
 /// Inserts a value into a table; the key has the location of the value.
