@@ -19,6 +19,7 @@ use hardpoint_report::deflection::DeflectionFact;
 use hardpoint_report::diagnose;
 use hardpoint_report::figures::{error, number, seconds, some_of, with_unit};
 use hardpoint_report::joint_limits::JointLimitFact;
+use hardpoint_report::loads;
 use hardpoint_report::maps::MapFact;
 use hardpoint_report::metric::{CaseMetrics, MetricFact};
 use hardpoint_report::page::Table;
@@ -280,16 +281,17 @@ fn run_in(
     path: &Path,
     cases: &mut CaseResults,
 ) -> Result<Outcome, Outcome> {
+    let not_written = |e: WriteError| session.not_written(&e);
     let analysis = session.plan(file, options.common.formulation())?;
     let read = session.seconds();
-    let mut folder = Folder::open(path).map_err(|e| session.not_written(&e))?;
+    let mut folder = Folder::open(path).map_err(not_written)?;
     let plan = Plan::new(file, options);
     if let Some(announcement) = plan.announcement(&path.display().to_string()) {
         session.remark(&announcement);
     }
 
     let started = Instant::now();
-    let mut tables = plan.begin(&folder).map_err(|e| session.not_written(&e))?;
+    let mut tables = plan.begin(&folder).map_err(not_written)?;
     session.patient(true);
     let course =
         session.solve_in_windows(&analysis, !options.no_sensitivities, |window| tables.add(window))?;
@@ -300,7 +302,7 @@ fn run_in(
     let outputs = format!("the files in `{}`", path.display());
     summary.diagnostics = diagnose::all(file, &summary, &course, Some(&outputs));
     let written = tables.end(&mut folder, &solution.sensitivities.admissibility, session.for_a_moment());
-    let written = written.map_err(|e| session.not_written(&e))?;
+    let written = written.map_err(not_written)?;
     summary.left_out.extend(plan.left_out());
     summary.left_out.extend(written.left_out);
 
@@ -328,104 +330,37 @@ fn run_in(
         if stopped_before && summary.status == RunStatus::Complete {
             summary.status = RunStatus::Interrupted;
         }
-        summary.files.extend(written.names.iter().map(|name| folder.path_of(name).display().to_string()));
-        if options.jerk && !stopped_before {
-            write_jerk(session, file, &analysis, &mut folder).map_err(|e| session.not_written(&e))?;
-            summary.files.push(folder.path_of("jerk.csv").display().to_string());
+        add_files(&mut summary, &folder, &written.names);
+        if !stopped_before {
+            let studied = results.write_studied(session, options.jerk, &mut folder, &mut summary);
+            tables_after.extend(studied.map_err(not_written)?);
         }
-        if file.model.has_loads() && !stopped_before {
-            let _working = session.working("reactions of the joints");
-            let loads = analysis.loads_with_sensitivities(&[]);
-            let (model, units) = (&file.model, file.units);
-            let joints = folder
-                .write("loads.csv", |out| Ok(hardpoint_report::loads::write(model, units, &loads, out)?));
-            let drivers = joints.and_then(|()| {
-                folder.write("drivers.csv", |out| {
-                    Ok(hardpoint_report::loads::write_drivers(model, units, &loads, out)?)
-                })
-            });
-            let deflections = DeflectionFact::all(model, units, &loads);
-            let elastic = drivers.and_then(|()| match deflections.is_empty() {
-                true => Ok(()),
-                false => folder.write("deflections.csv", |out| {
-                    Ok(DeflectionFact::write(&deflections, model, units, out)?)
-                }),
-            });
-            elastic.map_err(|e| session.not_written(&e))?;
-            let deflections = (!deflections.is_empty()).then_some("deflections.csv");
-            for name in ["loads.csv", "drivers.csv"].into_iter().chain(deflections) {
-                summary.files.push(folder.path_of(name).display().to_string());
-            }
-        }
-        if !file.model.clearances.is_empty() && !stopped_before {
-            let _working = session.working("least distances of shapes");
-            let found = session.until_interrupted(analysis.clone()).clearances(&[]);
-            let (model, units) = (&file.model, file.units);
-            let written = folder.write(CLEARANCES, |out| Ok(clearance::write(model, units, &found, out)?));
-            written.map_err(|e| session.not_written(&e))?;
-            summary.files.push(folder.path_of(CLEARANCES).display().to_string());
-            tables_after.extend(ClearanceFact::table(&ClearanceFact::all(model, units, &found)));
-            results.clearances = Some(found);
-        }
-        if options.workbook {
-            let contents =
-                RunDocument { file, course: &course, summary: &summary, suffix: options.format.suffix() };
-            let left_out = folder.write("motion.xlsx", |out| contents.write(out));
-            summary.left_out.extend(left_out.map_err(|e| session.not_written(&e))?);
-            summary.files.push(folder.path_of("motion.xlsx").display().to_string());
-        }
-        if options.pdf || !options.pdf_parts.is_empty() {
-            let contents =
-                RunDocument { file, course: &course, summary: &summary, suffix: options.format.suffix() };
-            let content = results.pdf_content(session, &options.pdf_parts, &summary);
-            let left_out = folder.write("report.pdf", |out| contents.write_pdf(&content, out));
-            if course.stride > 1 && !content.designs.is_empty() && content.has(PdfPart::Metrics) {
-                summary.left_out.push(DESIGNS_UNSOLVED.into());
-            }
-            summary.left_out.extend(left_out.map_err(|e| session.not_written(&e))?);
-            summary.files.push(folder.path_of("report.pdf").display().to_string());
-        }
-        if options.gltf {
-            let glb = hardpoint_export::animation(file, &solution.motion);
-            let written = folder.write("motion.glb", |out| glb.and_then(|glb| out.write_all(&glb)));
-            written.map_err(|e| session.not_written(&e))?;
-            let every = course.stride;
-            summary.left_out.extend(
-                (every > 1).then(|| format!("not in `motion.glb`: only one output time in {every} is there")),
-            );
-            summary.files.push(folder.path_of("motion.glb").display().to_string());
-        }
+        let documents = results.write_documents(session, options, &mut folder, &mut summary);
+        documents.map_err(not_written)?;
         // In a file with cases, the summary of the whole file has the maps.
         if case.is_none() {
-            write_metrics(&cases.metrics, file, &mut folder).map_err(|e| session.not_written(&e))?;
+            write_metrics(&cases.metrics, file, &mut folder).map_err(not_written)?;
             if !summary.metrics.is_empty() {
-                summary.files.push(folder.path_of(METRICS).display().to_string());
+                add_files(&mut summary, &folder, &[METRICS]);
             }
             maps::note(maps, &mut summary);
-            let names = maps::write(maps, &mut folder).map_err(|e| session.not_written(&e))?;
-            summary.files.extend(names.iter().map(|name| folder.path_of(name).display().to_string()));
+            let names = maps::write(maps, &mut folder).map_err(not_written)?;
+            add_files(&mut summary, &folder, &names);
             tables_after.extend(MapFact::table(maps));
         }
-        results.write(&mut folder, &mut summary, session).map_err(|e| session.not_written(&e))?;
+        results.write(&mut folder, &mut summary, session).map_err(not_written)?;
         if session.interrupted() && !stopped_before {
             session.ended_while_writing(path);
             return Err(Outcome::Interrupted);
         }
-        folder.commit(&FILES).map_err(|e| session.not_written(&e))?;
+        folder.commit(&FILES).map_err(not_written)?;
     }
 
     session.tell(file, &summary.diagnostics);
     if options.common.json {
         session.print_json(&summary);
     } else {
-        text::print(&summary_text(&summary));
-        for table in &tables_after {
-            text::print(&text::section(table));
-        }
-        if !solution.motion.is_empty() {
-            let partial = if summary.status == RunStatus::Complete { "" } else { " (partial)" };
-            text::print(&format!("\nreport: {}{partial}\n", report.display()));
-        }
+        print_summary(&summary, &tables_after, Some(report).filter(|_| !solution.motion.is_empty()));
     }
     // The page of all cases shows the first one.
     if case.is_some() && cases.metrics.len() == 1 {
@@ -436,6 +371,23 @@ fn run_in(
         RunStatus::Interrupted => Outcome::Interrupted,
         RunStatus::Complete => Outcome::Done,
     })
+}
+
+/// Prints the summary, further tables, and the path of the report if it is written.
+fn print_summary(summary: &Summary, tables: &[Table], report: Option<PathBuf>) {
+    text::print(&summary_text(summary));
+    for table in tables {
+        text::print(&text::section(table));
+    }
+    if let Some(report) = report {
+        let partial = if summary.status == RunStatus::Complete { "" } else { " (partial)" };
+        text::print(&format!("\nreport: {}{partial}\n", report.display()));
+    }
+}
+
+/// Adds the paths of written files to the summary.
+fn add_files(summary: &mut Summary, folder: &Folder, names: &[impl AsRef<str>]) {
+    summary.files.extend(names.iter().map(|name| folder.path_of(name.as_ref()).display().to_string()));
 }
 
 /// `results/<stem>` under the current folder.
@@ -579,6 +531,95 @@ impl Results<'_> {
         }
     }
 
+    /// Solves and writes third derivatives if wanted, loads and clearances. Returns the table of the clearances.
+    fn write_studied(
+        &mut self,
+        session: &Session,
+        jerk: bool,
+        folder: &mut Folder,
+        summary: &mut Summary,
+    ) -> Result<Option<Table>, WriteError> {
+        let model = &self.file.model;
+        if jerk {
+            write_jerk(session, self.file, self.analysis, folder)?;
+            add_files(summary, folder, &["jerk.csv"]);
+        }
+        if model.has_loads() {
+            self.write_loads(session, folder, summary)?;
+        }
+        if model.clearances.is_empty() {
+            return Ok(None);
+        }
+        let _working = session.working("least distances of shapes");
+        let found = session.until_interrupted(self.analysis.clone()).clearances(&[]);
+        let units = self.file.units;
+        folder.write(CLEARANCES, |out| Ok(clearance::write(model, units, &found, out)?))?;
+        add_files(summary, folder, &[CLEARANCES]);
+        let table = ClearanceFact::table(&ClearanceFact::all(model, units, &found));
+        self.clearances = Some(found);
+        Ok(table)
+    }
+
+    /// Writes the reactions of the joints, the forces of the drivers, and the deflections of elastic joints, if any.
+    fn write_loads(
+        &self,
+        session: &Session,
+        folder: &mut Folder,
+        summary: &mut Summary,
+    ) -> Result<(), WriteError> {
+        let _working = session.working("reactions of the joints");
+        let loads = self.analysis.loads_with_sensitivities(&[]);
+        let (model, units) = (&self.file.model, self.file.units);
+        folder.write("loads.csv", |out| Ok(loads::write(model, units, &loads, out)?))?;
+        folder.write("drivers.csv", |out| Ok(loads::write_drivers(model, units, &loads, out)?))?;
+        add_files(summary, folder, &["loads.csv", "drivers.csv"]);
+        let deflections = DeflectionFact::all(model, units, &loads);
+        if !deflections.is_empty() {
+            folder.write("deflections.csv", |out| {
+                Ok(DeflectionFact::write(&deflections, model, units, out)?)
+            })?;
+            add_files(summary, folder, &["deflections.csv"]);
+        }
+        Ok(())
+    }
+
+    /// Writes the workbook, the printed report and the animation, as far as they are wanted.
+    fn write_documents(
+        &self,
+        session: &Session,
+        options: &Run,
+        folder: &mut Folder,
+        summary: &mut Summary,
+    ) -> Result<(), WriteError> {
+        let (file, course, suffix) = (self.file, self.course, options.format.suffix());
+        if options.workbook {
+            let contents = RunDocument { file, course, summary, suffix };
+            let left_out = folder.write("motion.xlsx", |out| contents.write(out))?;
+            summary.left_out.extend(left_out);
+            add_files(summary, folder, &["motion.xlsx"]);
+        }
+        if options.pdf || !options.pdf_parts.is_empty() {
+            let contents = RunDocument { file, course, summary, suffix };
+            let content = self.pdf_content(session, &options.pdf_parts, summary);
+            let left_out = folder.write("report.pdf", |out| contents.write_pdf(&content, out))?;
+            if course.stride > 1 && !content.designs.is_empty() && content.has(PdfPart::Metrics) {
+                summary.left_out.push(DESIGNS_UNSOLVED.into());
+            }
+            summary.left_out.extend(left_out);
+            add_files(summary, folder, &["report.pdf"]);
+        }
+        if options.gltf {
+            let glb = hardpoint_export::animation(file, &course.kept.motion);
+            folder.write("motion.glb", |out| glb.and_then(|glb| out.write_all(&glb)))?;
+            let every = course.stride;
+            summary.left_out.extend(
+                (every > 1).then(|| format!("not in `motion.glb`: only one output time in {every} is there")),
+            );
+            add_files(summary, folder, &["motion.glb"]);
+        }
+        Ok(())
+    }
+
     /// Chosen parts of the printed report, all if none is chosen, with the named designs solved for them.
     fn pdf_content(&self, session: &Session, parts: &[PdfPart], summary: &Summary) -> PdfContent {
         let parts = if parts.is_empty() { PdfPart::ALL.to_vec() } else { parts.to_vec() };
@@ -624,8 +665,7 @@ impl Results<'_> {
         let _working = session.working("writing");
         let Page { html, .. } = self.page(summary);
         folder.write("report.html", |out| out.write_all(html.as_bytes()))?;
-        let names = ["report.html", "summary.json"];
-        summary.files.extend(names.map(|name| folder.path_of(name).display().to_string()));
+        add_files(summary, folder, &[REPORT, "summary.json"]);
         summary.timings.write = started.elapsed().as_secs_f64();
         summary.timings.total = session.seconds();
         let json = json_text(summary);
