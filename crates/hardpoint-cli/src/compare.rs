@@ -1,8 +1,10 @@
 //! `hardpoint compare`.
 
 use std::io::Write;
+use std::path::PathBuf;
 
-use hardpoint::Run;
+use hardpoint::model::Model;
+use hardpoint::{Analysis, Run};
 use hardpoint_file::ModelFile;
 use hardpoint_report::compare::{CompareFacts, SolvedModel, are_alike};
 use hardpoint_report::course::Course;
@@ -17,6 +19,7 @@ use crate::folder::{Folder, of_case};
 use crate::outcome::Outcome;
 use crate::session::{Session, json_text};
 use crate::text;
+use crate::whatif::is_wanted;
 
 /// All files of a comparison; the last one marks them as complete.
 const FILES: [&str; 3] = ["compare.html", "compare.csv", "compare.json"];
@@ -47,6 +50,27 @@ fn second(session: &Session, options: &Compare) -> Result<ModelFile, Outcome> {
     })
 }
 
+/// Motion of the second model: that of the case, or its only one.
+fn motion_of(
+    session: &Session,
+    other: &ModelFile,
+    case: Option<&str>,
+    first: &ModelFile,
+) -> Result<Model, Outcome> {
+    match case {
+        Some(name) => Ok(other.model.in_case(session.case(other, name)?)),
+        None if other.model.cases.is_empty() => Ok(other.model.clone()),
+        None => {
+            let why = format!(
+                "`{}` has cases and `{}` has none: there is no motion to compare",
+                other.file_name(),
+                first.file_name()
+            );
+            Err(session.misunderstood(&why))
+        }
+    }
+}
+
 fn compare_in(
     session: &Session,
     options: &Compare,
@@ -54,18 +78,7 @@ fn compare_in(
     case: Option<&str>,
 ) -> Result<Outcome, Outcome> {
     let mut other = second(session, options)?;
-    match options.motions.case.as_deref().or(case) {
-        Some(name) => other.model = other.model.in_case(session.case(&other, name)?),
-        None if other.model.cases.is_empty() => {}
-        None => {
-            let why = format!(
-                "`{}` has cases and `{}` has none: there is no motion to compare",
-                other.file_name(),
-                file.file_name()
-            );
-            return Err(session.misunderstood(&why));
-        }
-    }
+    other.model = motion_of(session, &other, options.motions.case.as_deref().or(case), &file)?;
     add_coordinates(&mut file.model);
     session.fits(&mut file);
     other.model.times.clone_from(&file.model.times);
@@ -99,39 +112,11 @@ fn compare_in(
             .map_err(|error| session.refused(&file, &error))?;
     }
     let measures = &options.measure;
-    let wanted = |name: &str| match measures.is_empty() {
-        true => file.model.measures.is_empty() || file.model.measure(name).is_some(),
-        false => measures.iter().any(|n| n == name),
-    };
+    let wanted = |name: &str| is_wanted(&file.model, measures, name);
 
     let mut written = Vec::new();
     if let Some(mut folder) = folder {
-        let page = are_alike(both).then(|| {
-            // Hardpoints of the other file, as changes of this one.
-            let mut change = vec![0.0; file.model.variables.len()];
-            let mut known = file.model.clone();
-            for h in &facts.hardpoints {
-                let moved = h.values[1].zip(h.values[0]).map_or(0.0, |(b, a)| b - a);
-                if let Some(v) = variable_named(&mut known, &h.name).filter(|v| v.0 < change.len()) {
-                    change[v.0] = file.units.to_si(known.variables[v.0].quantity, moved);
-                }
-            }
-            let course = Course::of(&file.model, &today);
-            let mut summary = Summary::new(&file, &analysis, &course);
-            summary.diagnostics = diagnose::all(&file, &summary, &course, None);
-            let changed = ChangedDesign {
-                name: other.file_name().into(),
-                note: format!("The design of {}.", other.file_name()),
-                change: &change,
-                today: &today,
-                exact: &exact,
-                prediction: None,
-            };
-            let request =
-                Request { changed: Some(changed), ..Request::of(&file, &analysis, &course, &summary) };
-            let finish = |payload| facts.page(payload, measures, &wanted);
-            report(&request, &finish).expect("a payload is plain data")
-        });
+        let page = are_alike(both).then(|| page_of_both(both, &analysis, &facts, measures, &wanted));
         let json = json_text(&facts);
         let result = page
             .map_or(Ok(()), |html| folder.write(FILES[0], |out| out.write_all(html.as_bytes())))
@@ -147,17 +132,56 @@ fn compare_in(
     if session.is_json() {
         session.print_json(&facts);
     } else {
-        let [a, b] = &facts.names;
-        text::print(&format!("{}\n", text::bold(&format!("{a} - {b}"))));
-        if facts.is_same() {
-            text::print("  the hardpoints and parameters of both are the same\n");
-        }
-        for table in facts.tables(&wanted) {
-            text::print(&text::section(&table));
-        }
-        for path in &written {
-            text::print(&format!("\nwritten: {}\n", path.display()));
-        }
+        print(&facts, &wanted, &written);
     }
     Ok(outcome)
+}
+
+/// Page of two models with the same bodies and outputs.
+fn page_of_both(
+    both: [SolvedModel<'_>; 2],
+    analysis: &Analysis<'_>,
+    facts: &CompareFacts,
+    measures: &[String],
+    wanted: &dyn Fn(&str) -> bool,
+) -> String {
+    let [SolvedModel { file, solution: today }, SolvedModel { file: other, solution: exact }] = both;
+    // Hardpoints of the other file, as changes of this one.
+    let mut change = vec![0.0; file.model.variables.len()];
+    let mut known = file.model.clone();
+    for h in &facts.hardpoints {
+        let moved = h.values[1].zip(h.values[0]).map_or(0.0, |(b, a)| b - a);
+        if let Some(v) = variable_named(&mut known, &h.name).filter(|v| v.0 < change.len()) {
+            change[v.0] = file.units.to_si(known.variables[v.0].quantity, moved);
+        }
+    }
+    let course = Course::of(&file.model, today);
+    let mut summary = Summary::new(file, analysis, &course);
+    summary.diagnostics = diagnose::all(file, &summary, &course, None);
+    let changed = ChangedDesign {
+        name: other.file_name().into(),
+        note: format!("The design of {}.", other.file_name()),
+        change: &change,
+        today,
+        exact,
+        prediction: None,
+    };
+    let request = Request { changed: Some(changed), ..Request::of(file, analysis, &course, &summary) };
+    let finish = |payload| facts.page(payload, measures, wanted);
+    report(&request, &finish).expect("a payload is plain data")
+}
+
+/// Prints the tables of differences and the written files.
+fn print(facts: &CompareFacts, wanted: &dyn Fn(&str) -> bool, written: &[PathBuf]) {
+    let [a, b] = &facts.names;
+    text::print(&format!("{}\n", text::bold(&format!("{a} - {b}"))));
+    if facts.is_same() {
+        text::print("  the hardpoints and parameters of both are the same\n");
+    }
+    for table in facts.tables(wanted) {
+        text::print(&text::section(&table));
+    }
+    for path in written {
+        text::print(&format!("\nwritten: {}\n", path.display()));
+    }
 }

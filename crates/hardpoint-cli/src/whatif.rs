@@ -40,21 +40,17 @@ pub fn whatif(options: &Whatif) -> Outcome {
     session.end(session.for_motions(&options.common.model, &options.motions, each))
 }
 
-pub fn whatif_in(
-    session: &Session,
-    options: &Whatif,
-    mut file: ModelFile,
-    case: Option<&str>,
-) -> Result<Outcome, Outcome> {
+/// Changes of design variables that the options give, by their index in the file, which gets the variables it lacks.
+fn settings(session: &Session, options: &Whatif, file: &mut ModelFile) -> Result<Vec<(usize, f64)>, Outcome> {
     let mut settings: Vec<(usize, f64)> = Vec::new();
     if let Some(name) = &options.design {
         let designs = &file.model.designs;
         let k = named("design", name, designs.iter().map(|design| design.name.as_str()))
-            .map_err(|error| session.refused(&file, &error))?;
+            .map_err(|error| session.refused(file, &error))?;
         settings.extend(designs[k].changes.iter().map(|(variable, by)| (variable.0, *by)));
     }
     for text in &options.set {
-        let (variable, by) = setting(&mut file, text).map_err(|why| session.misunderstood(&why))?;
+        let (variable, by) = setting(file, text).map_err(|why| session.misunderstood(&why))?;
         if settings.iter().any(|(known, _)| *known == variable) {
             let name = &file.model.variables[variable].name;
             let why = format!("`--set {text}`: `{name}` is set already; give each variable one change");
@@ -62,6 +58,24 @@ pub fn whatif_in(
         }
         settings.push((variable, by));
     }
+    Ok(settings)
+}
+
+/// True for the chosen measures; by default for those of the model file, or all outputs if it has none.
+pub fn is_wanted(model: &Model, chosen: &[String], name: &str) -> bool {
+    match chosen.is_empty() {
+        true => model.measures.is_empty() || model.measure(name).is_some(),
+        false => chosen.iter().any(|n| n == name),
+    }
+}
+
+pub fn whatif_in(
+    session: &Session,
+    options: &Whatif,
+    mut file: ModelFile,
+    case: Option<&str>,
+) -> Result<Outcome, Outcome> {
+    let settings = settings(session, options, &mut file)?;
     if file.model.hardpoints.iter().filter(|h| !h.unnamed).count() <= MOST_RANKED {
         add_coordinates(&mut file.model);
     }
@@ -79,13 +93,7 @@ pub fn whatif_in(
     session.check_measures(&file, options.measure.iter().chain(&options.over))?;
     let folder = options.output.as_ref().map(|path| Folder::open(&of_case(path, case)));
     let folder = folder.transpose().map_err(|e| session.not_written(&e))?;
-    if let Some(to) = &options.save {
-        session.may_save(&options.common.model, Some(to))?;
-        // All cases share the design, so the saved file has all of them.
-        let mut whole = session.read(&options.common.model)?;
-        whole.model.variables.clone_from(&file.model.variables);
-        session.save(&whole, &change, to)?;
-    }
+    save(session, options, &file, &change)?;
     session.fits(&mut file);
     let analysis = session.plan(&file, options.common.formulation())?;
 
@@ -118,10 +126,7 @@ pub fn whatif_in(
     session.tell(&file, &facts.diagnostics);
 
     let names = &options.measure;
-    let wanted = |name: &str| match names.is_empty() {
-        true => file.model.measures.is_empty() || file.model.measure(name).is_some(),
-        false => names.iter().any(|n| n == name),
-    };
+    let wanted = |name: &str| is_wanted(&file.model, names, name);
     let mut written = None;
     if let Some((mut folder, (course, summary))) = folder.zip(gathered) {
         let beside = changed.as_ref().map(|changed| ChangedDesign::of(&file.model, changed));
@@ -145,6 +150,16 @@ pub fn whatif_in(
         text::print(&saved.map_or(String::new(), |path| format!("\nsaved: {}\n", path.display())));
     }
     Ok(outcome)
+}
+
+/// Saves the changed design, if wanted.
+fn save(session: &Session, options: &Whatif, file: &ModelFile, change: &[f64]) -> Result<(), Outcome> {
+    let Some(to) = &options.save else { return Ok(()) };
+    session.may_save(&options.common.model, Some(to))?;
+    // All cases share the design, so the saved file has all of them.
+    let mut whole = session.read(&options.common.model)?;
+    whole.model.variables.clone_from(&file.model.variables);
+    session.save(&whole, change, to)
 }
 
 /// Nearest admissible change, and the model with its variables; `None` if the change is admissible.
