@@ -349,6 +349,13 @@ struct Sizes {
     geometry: usize,
 }
 
+/// Type of a parameter that is read only.
+const READ: &str = "const double *";
+/// Parameters of the generated functions: a position and its rates, and memory.
+const POSITION: [(&str, &str); 2] = [(READ, "x"), (READ, "q")];
+const RATES: [(&str, &str); 2] = [(READ, "qd"), (READ, "qdd")];
+const WORK: (&str, &str) = ("double *", "w");
+
 /// Functions of the programs, while they are written.
 struct Functions<'a> {
     name: &'a str,
@@ -483,124 +490,152 @@ impl Source<'_> {
 
     /// The functions of all programs.
     fn functions(&self) -> Functions<'_> {
-        let (name, step) = (&self.name, self.step);
-        let (n, drivers) = (step.coordinates.len(), step.drivers.len());
-        let mut inputs: Vec<String> = (0..n).map(|k| format!("x[{k}]")).collect();
-        inputs.extend((0..drivers).flat_map(|d| ["q", "qd", "qdd"].map(|of| format!("{of}[{d}]"))));
-        let design_at = self.has_design().then_some(inputs.len());
-        inputs.extend(self.design_inputs("b"));
-        let read = "const double *";
-        let geometry = if self.has_design() { vec![(read, "b"), (read, "g")] } else { Vec::new() };
-        let design = if self.has_design() { vec![(read, "b")] } else { Vec::new() };
-        let position = [(read, "x"), (read, "q")];
-        let rates = [(read, "qd"), (read, "qdd")];
-        let work = ("double *", "w");
-        let output_type = format!("{name}_output *");
-        let position_type = format!("const {name}_position *");
-        let in_y = |count: usize| (0..count).map(|k| Some(format!("y[{k}]"))).collect::<Vec<_>>();
-
         let mut functions = Functions {
-            name,
-            larger: format!("{name}_larger"),
+            name: &self.name,
+            larger: format!("{}_larger", self.name),
             text: String::new(),
             sizes: Sizes::default(),
             prepare: String::new(),
         };
+        self.write_steps(&mut functions);
+        if self.derivatives {
+            self.write_step_tangents(&mut functions);
+        }
+        if let Some(formulas) = self.formulas.filter(|_| self.has_formulas()) {
+            self.write_formulas(&mut functions, formulas);
+        }
+        functions
+    }
+
+    /// Parameters of functions that depend on the design: its variables, and the numbers that depend on them alone.
+    fn design_parameters(&self) -> &'static [(&'static str, &'static str)] {
+        if self.has_design() { &[(READ, "b"), (READ, "g")] } else { &[] }
+    }
+
+    /// Inputs of the programs of a step: coordinates, drivers and, from the number beside them on, the design.
+    fn step_inputs(&self) -> (Vec<String>, usize) {
+        let mut inputs: Vec<String> = (0..self.step.coordinates.len()).map(|k| format!("x[{k}]")).collect();
+        let of_driver = |d: usize| ["q", "qd", "qdd"].map(|of| format!("{of}[{d}]"));
+        inputs.extend((0..self.step.drivers.len()).flat_map(of_driver));
+        let at = inputs.len();
+        inputs.extend(self.design_inputs("b"));
+        (inputs, at)
+    }
+
+    /// Correction, path and motion of a step.
+    fn write_steps(&self, functions: &mut Functions<'_>) {
+        let (step, geometry) = (self.step, self.design_parameters());
+        let n = step.coordinates.len();
+        let (inputs, at) = self.step_inputs();
+        let design_at = self.has_design().then_some(at);
+        let output_type = format!("{}_output *", self.name);
+        let in_y = |count: usize| (0..count).map(|k| Some(format!("y[{k}]"))).collect::<Vec<_>>();
         functions.write(
             ("correct", "One Newton correction: the corrected coordinates, and the size of the correction."),
             &step.correction,
-            &[&position[..], &geometry, &[work, ("double *", "y")]].concat(),
+            &[&POSITION[..], geometry, &[WORK, ("double *", "y")]].concat(),
             (inputs.clone(), design_at),
             in_y(n + 1),
         );
         functions.write(
             ("path", "First and second derivative of every coordinate."),
             &step.path,
-            &[&position[..], &geometry, &rates, &[work, ("double *", "y")]].concat(),
+            &[&POSITION[..], geometry, &RATES, &[WORK, ("double *", "y")]].concat(),
             (inputs.clone(), design_at),
             in_y(2 * n),
         );
         functions.write(
             ("motion", "Motion of all bodies, and the numbers that it is checked by."),
             &step.motion,
-            &[&position[..], &geometry, &rates, &[work, ("double *", "check"), (&output_type, "o")]].concat(),
-            (inputs.clone(), design_at),
+            &[&POSITION[..], geometry, &RATES, &[WORK, ("double *", "check"), (&output_type, "o")]].concat(),
+            (inputs, design_at),
             self.motion_outputs("o", true),
         );
-        // A direction in the space of the inputs of the step: coordinates, drivers, design.
-        let direction_type = format!("const {name}_direction *");
-        let direction = || {
-            let mut all: Vec<String> = (0..n).map(|k| format!("dx[{k}]")).collect();
-            let of_drivers = |d: usize| ["q", "qd", "qdd"].map(|of| format!("along->{of}[{d}]"));
-            all.extend((0..drivers).flat_map(of_drivers));
-            all.extend(self.design_inputs("along->design"));
-            all
+    }
+
+    /// Derivatives of correction and motion in a direction: of the coordinates, drivers and design.
+    fn write_step_tangents(&self, functions: &mut Functions<'_>) {
+        let (name, step) = (&self.name, self.step);
+        let (n, drivers) = (step.coordinates.len(), step.drivers.len());
+        let design: &[(&str, &str)] = if self.has_design() { &[(READ, "b")] } else { &[] };
+        let (mut inputs, at) = self.step_inputs();
+        inputs.extend((0..n).map(|k| format!("dx[{k}]")));
+        let of_driver = |d: usize| ["q", "qd", "qdd"].map(|of| format!("along->{of}[{d}]"));
+        inputs.extend((0..drivers).flat_map(of_driver));
+        inputs.extend(self.design_inputs("along->design"));
+        let (direction_type, output_type) = (format!("const {name}_direction *"), format!("{name}_output *"));
+        let of_position = |k: usize| k >= n && (k >= at || (k - n).is_multiple_of(3));
+        functions.write(
+            ("correct_tangent", "Derivative of the coordinates in a direction."),
+            &step.correction.tangent(|k| of_position(k) && self.is_argument(at, k)),
+            &[&POSITION[..], design, &[(&direction_type, "along"), WORK, ("double *", "dx")]].concat(),
+            (inputs.clone(), None),
+            (0..=n).map(|k| (k < n).then(|| format!("dx[{k}]"))).collect(),
+        );
+        let last = [(&direction_type[..], "along"), WORK, (&output_type, "d")];
+        functions.write(
+            ("motion_tangent", "Derivative of the motion in a direction."),
+            &step.motion.tangent(|k| self.is_argument(at, k)),
+            &[&POSITION[..], &RATES, &[(READ, "dx")], design, &last].concat(),
+            (inputs, None),
+            self.motion_outputs("d", false),
+        );
+    }
+
+    /// True for inputs that programs are differentiated by: those before the design, and its arguments.
+    fn is_argument(&self, design_at: usize, k: usize) -> bool {
+        k < design_at || self.design.contains(&(k - design_at))
+    }
+
+    /// Measures by the motion of the bodies, and their derivatives in a direction.
+    fn write_formulas(&self, functions: &mut Functions<'_>, formulas: &MeasureFormulas) {
+        let name = &self.name;
+        let bodies = |of: &str| -> Vec<String> {
+            let body = |b: &usize| (0..BODY).map(|k| body_number(of, *b, k)).collect::<Vec<_>>();
+            formulas.bodies.iter().flat_map(body).collect()
         };
-        let is_argument = |at: usize, k: usize| k < at || self.design.contains(&(k - at));
+        let moving = bodies("o").len();
+        let mut inputs = bodies("o");
+        inputs.extend(formulas.turning.iter().map(|m| match self.counter_of(*m) {
+            Some(c) => format!("p->turn[{c}]"),
+            None => "0.0".to_owned(),
+        }));
+        inputs.push("0.0".to_owned());
+        let at = inputs.len();
+        inputs.extend(self.design_inputs("b"));
+        let (position_type, output_type) = (format!("const {name}_position *"), format!("{name}_output *"));
+        functions.write(
+            ("formulas", "Measures; those whose guard is positive or NaN are undefined."),
+            &formulas.program,
+            &[
+                &[(&position_type[..], "p")],
+                self.design_parameters(),
+                &[WORK, ("double *", "guard"), (&output_type, "o")],
+            ]
+            .concat(),
+            (inputs.clone(), self.has_design().then_some(at)),
+            self.formula_outputs(formulas, "o", true),
+        );
         if self.derivatives {
-            let of_position = |k: usize| k >= n && (k >= n + 3 * drivers || (k - n).is_multiple_of(3));
+            let mut direction = bodies("d");
+            direction.resize(at, "0.0".to_owned());
+            direction.extend(self.design_inputs("along->design"));
+            let design: &[(&str, &str)] = if self.has_design() { &[(READ, "b")] } else { &[] };
+            let direction_type = format!("const {name}_direction *");
+            let result_type = format!("const {name}_output *");
             functions.write(
-                ("correct_tangent", "Derivative of the coordinates in a direction."),
-                &step.correction.tangent(|k| of_position(k) && is_argument(n + 3 * drivers, k)),
-                &[&position[..], &design, &[(&direction_type, "along"), work, ("double *", "dx")]].concat(),
-                ([inputs.clone(), direction()].concat(), None),
-                (0..=n).map(|k| (k < n).then(|| format!("dx[{k}]"))).collect(),
-            );
-            let last = [(&direction_type[..], "along"), work, (&output_type, "d")];
-            functions.write(
-                ("motion_tangent", "Derivative of the motion in a direction."),
-                &step.motion.tangent(|k| is_argument(n + 3 * drivers, k)),
-                &[&position[..], &rates, &[(read, "dx")], &design, &last].concat(),
-                ([inputs, direction()].concat(), None),
-                self.motion_outputs("d", false),
-            );
-        }
-        if let Some(formulas) = self.formulas.filter(|_| self.has_formulas()) {
-            let bodies = |of: &str| -> Vec<String> {
-                let body = |b: &usize| (0..BODY).map(|k| body_number(of, *b, k)).collect::<Vec<_>>();
-                formulas.bodies.iter().flat_map(body).collect()
-            };
-            let moving = bodies("o").len();
-            let mut inputs = bodies("o");
-            inputs.extend(formulas.turning.iter().map(|m| match self.counter_of(*m) {
-                Some(c) => format!("p->turn[{c}]"),
-                None => "0.0".to_owned(),
-            }));
-            inputs.push("0.0".to_owned());
-            let at = inputs.len();
-            inputs.extend(self.design_inputs("b"));
-            functions.write(
-                ("formulas", "Measures; those whose guard is positive or NaN are undefined."),
-                &formulas.program,
+                ("formulas_tangent", "Derivatives of the measures in a direction."),
+                &formulas.program.tangent(|k| k < moving || k >= at && self.is_argument(at, k)),
                 &[
                     &[(&position_type[..], "p")],
-                    &geometry[..],
-                    &[work, ("double *", "guard"), (&output_type, "o")],
+                    design,
+                    &[(&direction_type, "along"), (&result_type, "o"), WORK, (&output_type, "d")],
                 ]
                 .concat(),
-                (inputs.clone(), self.has_design().then_some(at)),
-                self.formula_outputs(formulas, "o", true),
+                ([inputs, direction].concat(), None),
+                self.formula_outputs(formulas, "d", false),
             );
-            if self.derivatives {
-                let mut direction = bodies("d");
-                direction.resize(at, "0.0".to_owned());
-                direction.extend(self.design_inputs("along->design"));
-                let result_type = format!("const {name}_output *");
-                functions.write(
-                    ("formulas_tangent", "Derivatives of the measures in a direction."),
-                    &formulas.program.tangent(|k| k < moving || k >= at && is_argument(at, k)),
-                    &[
-                        &[(&position_type[..], "p")],
-                        &design[..],
-                        &[(&direction_type, "along"), (&result_type, "o"), work, (&output_type, "d")],
-                    ]
-                    .concat(),
-                    ([inputs, direction].concat(), None),
-                    self.formula_outputs(formulas, "d", false),
-                );
-            }
         }
-        functions
     }
 
     fn has_formulas(&self) -> bool {
@@ -751,85 +786,15 @@ impl Source<'_> {
     fn header(&self, sizes: Sizes) -> String {
         let (model, step) = (&self.file.model, self.step);
         let upper = self.name.to_ascii_uppercase();
-        let si = Units::default();
-        let mut taken = HashSet::new();
-        let mut enumerated = |kind: &str, list: &mut dyn Iterator<Item = (String, String)>| {
-            let mut lines = Vec::new();
-            for (k, (name, about)) in list.enumerate() {
-                let plain = format!("{upper}_{kind}_{}", identifier(&name).to_ascii_uppercase());
-                let constant = std::iter::once(plain.clone()).chain((2..).map(|n| format!("{plain}_{n}")));
-                let constant = constant.into_iter().find(|c| !taken.contains(c)).unwrap_or(plain);
-                taken.insert(constant.clone());
-                lines.push(format!("    {constant} = {k}, /* {} */", comment(&about)));
-            }
-            // C99 has a comma before the comment of the last one, too.
-            lines.join("\n")
-        };
-        let mut drivers = model.drivers.iter().map(|driver| {
-            let note = if driver.is_reversed { "; reversed, as in the model file" } else { "" };
-            let unit = unit(si, model.driven(driver).quantity);
-            (driver.name.clone(), format!("{}, {unit}{note}", driver.name))
-        });
-        let driver_names = enumerated("DRIVER", &mut drivers);
-        let mut bodies = model.bodies.iter().skip(1).map(|body| (body.name.clone(), body.name.clone()));
-        let body_names = enumerated("BODY", &mut bodies);
-        let mut variables = self.design.iter().map(|k| {
-            let variable = &model.variables[*k];
-            (variable.name.clone(), format!("{}, {}", variable.name, unit(si, variable.quantity)))
-        });
-        let design_names = enumerated("DESIGN", &mut variables);
-        let mut measures = self.measures.list.iter().map(|m| {
-            let note = match m.from {
-                MeasureSource::Formulas(_) => "",
-                MeasureSource::Step(_) => "; without rates",
-            };
-            let Output { name, dimension, .. } = &m.output;
-            (name.clone(), format!("{name}, {}{note}", unit(si, *dimension)))
-        });
-        let measure_names = enumerated("MEASURE", &mut measures);
-        let (has_measures, has_design) = (self.has_measures(), self.has_design());
+        let [driver_names, body_names, design_names, measure_names] = self.enumerations();
         let count = |name: &str, count: usize| format!("#define {upper}_{name} {count}\n");
         let designs =
             format!("\n/* Design variables: indices of `design`. */\nenum {{\n{design_names}\n}};\n");
-        let with_design = |text: String| if has_design { text } else { String::new() };
-        let mut derivative = String::new();
-        if self.derivatives {
-            let places = [
-                ("and_of_design", with_design(" and of the design".to_owned())),
-                (
-                    "locked",
-                    with_design(format!(
-                        " {upper}_LOCKED: redundant constraints would\n * contradict each other in this direction of \
-                         the design."
-                    )),
-                ),
-                ("direction_field", with_design(format!("    double design[{upper}_DESIGN];\n"))),
-            ];
-            derivative += &self.filled(DERIVATIVE_DECLARED, &places);
-        }
-        if has_design {
-            derivative += &self.filled(DESIGN_DECLARED, &[]);
-            if has_measures {
-                derivative += &self.filled(GRADIENT_DECLARED, &[]);
-            }
-        }
+        let with_design = |text: String| if self.has_design() { text } else { String::new() };
         let measure_text = self.filled(MEASURE_TYPES, &[("measure_constants", measure_names)]);
         let jacobian = self.filled(JACOBIAN_DECLARED, &[]);
         let field = format!("    {}_measure_value measure[{upper}_MEASURES];\n", self.name);
-        let when = |text: String| if has_measures { text } else { String::new() };
-        let start: Vec<String> = model
-            .drivers
-            .iter()
-            .zip(&step.drivers)
-            .map(|(driver, at)| {
-                format!(
-                    "{} at {} {}",
-                    comment(&driver.name),
-                    at.start,
-                    unit(si, model.driven(driver).quantity)
-                )
-            })
-            .collect();
+        let when = |text: String| if self.has_measures() { text } else { String::new() };
         let mut places = vec![
             ("drivers", step.drivers.len().to_string()),
             ("bodies", (model.bodies.len() - 1).to_string()),
@@ -855,16 +820,105 @@ impl Source<'_> {
                     sizes.geometry.max(1)
                 )),
             ),
-            ("derivative", derivative),
+            ("derivative", self.derivative_declarations()),
             ("driver_names", driver_names),
             ("body_names", body_names),
             ("measure_names", when(measure_text)),
             ("measure_field", when(field)),
             ("jacobian", when(jacobian)),
-            ("start", start.join(", ")),
+            ("start", self.start_values()),
         ];
         places.extend(self.heading());
         self.filled(HEADER, &places)
+    }
+
+    /// Constants of the drivers, bodies, design variables and measures, with distinct names.
+    fn enumerations(&self) -> [String; 4] {
+        let (model, si) = (&self.file.model, Units::default());
+        let upper = self.name.to_ascii_uppercase();
+        let mut taken = HashSet::new();
+        let mut enumerated = |kind: &str, list: &mut dyn Iterator<Item = (String, String)>| {
+            let mut lines = Vec::new();
+            for (k, (name, about)) in list.enumerate() {
+                let plain = format!("{upper}_{kind}_{}", identifier(&name).to_ascii_uppercase());
+                let constant = std::iter::once(plain.clone()).chain((2..).map(|n| format!("{plain}_{n}")));
+                let constant = constant.into_iter().find(|c| !taken.contains(c)).unwrap_or(plain);
+                taken.insert(constant.clone());
+                lines.push(format!("    {constant} = {k}, /* {} */", comment(&about)));
+            }
+            // C99 has a comma before the comment of the last one, too.
+            lines.join("\n")
+        };
+        let mut drivers = model.drivers.iter().map(|driver| {
+            let note = if driver.is_reversed { "; reversed, as in the model file" } else { "" };
+            let unit = unit(si, model.driven(driver).quantity);
+            (driver.name.clone(), format!("{}, {unit}{note}", driver.name))
+        });
+        let drivers = enumerated("DRIVER", &mut drivers);
+        let mut bodies = model.bodies.iter().skip(1).map(|body| (body.name.clone(), body.name.clone()));
+        let bodies = enumerated("BODY", &mut bodies);
+        let mut variables = self.design.iter().map(|k| {
+            let variable = &model.variables[*k];
+            (variable.name.clone(), format!("{}, {}", variable.name, unit(si, variable.quantity)))
+        });
+        let variables = enumerated("DESIGN", &mut variables);
+        let mut measures = self.measures.list.iter().map(|m| {
+            let note = match m.from {
+                MeasureSource::Formulas(_) => "",
+                MeasureSource::Step(_) => "; without rates",
+            };
+            let Output { name, dimension, .. } = &m.output;
+            (name.clone(), format!("{name}, {}{note}", unit(si, *dimension)))
+        });
+        let measures = enumerated("MEASURE", &mut measures);
+        [drivers, bodies, variables, measures]
+    }
+
+    /// Declarations of the functions for derivatives and design variables.
+    fn derivative_declarations(&self) -> String {
+        let upper = self.name.to_ascii_uppercase();
+        let with_design = |text: String| if self.has_design() { text } else { String::new() };
+        let mut derivative = String::new();
+        if self.derivatives {
+            let places = [
+                ("and_of_design", with_design(" and of the design".to_owned())),
+                (
+                    "locked",
+                    with_design(format!(
+                        " {upper}_LOCKED: redundant constraints would\n * contradict each other in this direction of \
+                         the design."
+                    )),
+                ),
+                ("direction_field", with_design(format!("    double design[{upper}_DESIGN];\n"))),
+            ];
+            derivative += &self.filled(DERIVATIVE_DECLARED, &places);
+        }
+        if self.has_design() {
+            derivative += &self.filled(DESIGN_DECLARED, &[]);
+            if self.has_measures() {
+                derivative += &self.filled(GRADIENT_DECLARED, &[]);
+            }
+        }
+        derivative
+    }
+
+    /// Values of the drivers at which the motion starts.
+    fn start_values(&self) -> String {
+        let (model, si) = (&self.file.model, Units::default());
+        let values: Vec<String> = model
+            .drivers
+            .iter()
+            .zip(&self.step.drivers)
+            .map(|(driver, at)| {
+                format!(
+                    "{} at {} {}",
+                    comment(&driver.name),
+                    at.start,
+                    unit(si, model.driven(driver).quantity)
+                )
+            })
+            .collect();
+        values.join(", ")
     }
 
     /// Places of the comment at the beginning of a file.
