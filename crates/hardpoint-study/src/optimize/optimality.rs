@@ -8,7 +8,7 @@
 //! distance `t` of an extremum from its target sum to `2 t`. The multipliers are
 //! found by non-negative least squares over the active constraints, independent of the solver.
 
-use super::problem::{Point, Problem, Rows};
+use super::problem::{LimitRow, Point, Problem, Rows};
 use hardpoint_search::quadratic::non_negative;
 
 /// Distance from its end, as a fraction of its scale, below which a constraint is active.
@@ -80,6 +80,76 @@ fn by_parts(d: &[f64], spans: &[f64]) -> Vec<f64> {
     d.iter().zip(spans).map(|(d, span)| d * span).collect()
 }
 
+/// Active bounds and limits: gradient by fractions of the bounds, constraint, and size of one of its SI units in the
+/// unit of that gradient.
+fn active_constraints(
+    problem: &Problem<'_>,
+    point: &Point,
+    limit_scales: &[f64],
+    spans: &[f64],
+) -> Vec<(Vec<f64>, ActiveConstraint, f64)> {
+    let mut active = Vec::new();
+    for (v, part) in problem.parts(&point.design).into_iter().enumerate() {
+        let mut push = |sign: f64, binding: ActiveConstraint| {
+            let mut gradient = vec![0.0; spans.len()];
+            gradient[v] = sign;
+            active.push((gradient, binding, spans[v]));
+        };
+        if part < BINDS {
+            push(-1.0, ActiveConstraint::Lower(v));
+        } else if part > 1.0 - BINDS {
+            push(1.0, ActiveConstraint::Upper(v));
+        }
+    }
+    let is_active = |row: &&LimitRow| row.equal || row.exceeds > -BINDS * limit_scales[row.of];
+    for row in point.limits.iter().filter(is_active) {
+        let scale = limit_scales[row.of];
+        let (limit, of) = problem.limits[row.of];
+        let motion = of.motion();
+        let binding = if row.upper {
+            ActiveConstraint::Most(limit, motion)
+        } else {
+            ActiveConstraint::Least(limit, motion)
+        };
+        let mut push = |d: Vec<f64>| {
+            for sign in if row.equal { [1.0, -1.0].as_slice() } else { &[1.0] } {
+                active.push((d.iter().map(|d| sign * d / scale).collect(), binding, sign * scale));
+            }
+        };
+        let spread = point.spreads.iter().find(|s| row.spread && s.of == row.of);
+        // For a range, every pair of a maximum and a minimum.
+        let [high, low] =
+            spread.map_or([Vec::new(), Vec::new()], |s| [&s.ends[0], &s.ends[1]].map(|e| e.at_peak(spans)));
+        for ((_, a), (_, b)) in high.iter().flat_map(|a| low.iter().map(move |b| (a, b))) {
+            push(a.iter().zip(b).map(|(a, b)| a + b).collect());
+        }
+        if spread.is_none() {
+            push(by_parts(&row.d, spans));
+        }
+    }
+    active
+}
+
+/// Constraints with a multiplier, and the decrease of the objective by exceeding all limits by their scales.
+fn binding(
+    active: Vec<(Vec<f64>, ActiveConstraint, f64)>,
+    multipliers: &[f64],
+) -> (Vec<(ActiveConstraint, f64)>, f64) {
+    let (mut binding, mut price) = (Vec::<(ActiveConstraint, f64)>::new(), 0.0);
+    for ((_, what, scale), multiplier) in active.into_iter().zip(multipliers).filter(|(_, m)| **m != 0.0) {
+        price += match what {
+            ActiveConstraint::Least(..) | ActiveConstraint::Most(..) => multiplier.abs(),
+            ActiveConstraint::Lower(_) | ActiveConstraint::Upper(_) => 0.0,
+        };
+        // One limit may be active at several times of a curve at once.
+        match binding.iter_mut().find(|(known, _)| *known == what) {
+            Some((_, worth)) => *worth += multiplier / scale,
+            None => binding.push((what, multiplier / scale)),
+        }
+    }
+    (binding, price)
+}
+
 impl Optimality {
     pub(super) fn of(problem: &Problem<'_>, point: &Point, limit_scales: &[f64], steepest: f64) -> Self {
         let n = problem.bounds.len();
@@ -98,52 +168,9 @@ impl Optimality {
             d.resize(size, 0.0);
             d
         };
-        // Columns: gradient by fractions of the bounds, and weight in the sum of each group of peaks. Beside each its
-        // constraint, and the size of one of its SI units in the unit of its gradient.
-        let mut columns: Vec<Vec<f64>> = Vec::new();
-        let mut constraints: Vec<Option<(ActiveConstraint, f64)>> = Vec::new();
-        for (v, part) in problem.parts(&point.design).into_iter().enumerate() {
-            let mut push = |sign: f64, binding: ActiveConstraint| {
-                let mut column = vec![0.0; size];
-                column[v] = sign;
-                columns.push(column);
-                constraints.push(Some((binding, spans[v])));
-            };
-            if part < BINDS {
-                push(-1.0, ActiveConstraint::Lower(v));
-            } else if part > 1.0 - BINDS {
-                push(1.0, ActiveConstraint::Upper(v));
-            }
-        }
-        for row in &point.limits {
-            let scale = limit_scales[row.of];
-            if row.equal || row.exceeds > -BINDS * scale {
-                let (limit, of) = problem.limits[row.of];
-                let motion = of.motion();
-                let binding = if row.upper {
-                    ActiveConstraint::Most(limit, motion)
-                } else {
-                    ActiveConstraint::Least(limit, motion)
-                };
-                let mut push = |d: Vec<f64>| {
-                    for sign in if row.equal { [1.0, -1.0].as_slice() } else { &[1.0] } {
-                        columns.push(padded(d.iter().map(|d| sign * d / scale).collect()));
-                        constraints.push(Some((binding, sign * scale)));
-                    }
-                };
-                let spread = point.spreads.iter().find(|s| row.spread && s.of == row.of);
-                // For a range, every pair of a maximum and a minimum.
-                let [high, low] = spread.map_or([Vec::new(), Vec::new()], |s| {
-                    [&s.ends[0], &s.ends[1]].map(|e| e.at_peak(&spans))
-                });
-                for ((_, a), (_, b)) in high.iter().flat_map(|a| low.iter().map(move |b| (a, b))) {
-                    push(a.iter().zip(b).map(|(a, b)| a + b).collect());
-                }
-                if spread.is_none() {
-                    push(by_parts(&row.d, &spans));
-                }
-            }
-        }
+        // Columns: gradient by fractions of the bounds, and weight in the sum of each group of peaks.
+        let active = active_constraints(problem, point, limit_scales, &spans);
+        let mut columns: Vec<Vec<f64>> = active.iter().map(|(d, ..)| padded(d.clone())).collect();
         let first_peak = columns.len();
         let mut shortfalls: Vec<f64> = Vec::new();
         for (group, (rows, _)) in groups.iter().enumerate() {
@@ -151,7 +178,6 @@ impl Optimality {
                 let mut column = padded(d);
                 column[n + group] = weight;
                 columns.push(column);
-                constraints.push(None);
                 shortfalls.push(short);
             }
         }
@@ -171,19 +197,7 @@ impl Optimality {
         let vanishes =
             !point.has_only_squares() && point.goal_size() <= MET * weight && left <= FLAT * weight;
         let (residual, left_of_start) = if met { (0.0, 0.0) } else { (left / scale, left / weight) };
-        let (mut binding, mut price) = (Vec::<(ActiveConstraint, f64)>::new(), 0.0);
-        for (constraint, multiplier) in constraints.into_iter().zip(multipliers).filter(|(_, m)| *m != 0.0) {
-            let Some((what, scale)) = constraint else { continue };
-            price += match what {
-                ActiveConstraint::Least(..) | ActiveConstraint::Most(..) => multiplier.abs(),
-                ActiveConstraint::Lower(_) | ActiveConstraint::Upper(_) => 0.0,
-            };
-            // One limit may be active at several times of a curve at once.
-            match binding.iter_mut().find(|(known, _)| *known == what) {
-                Some((_, worth)) => *worth += multiplier / scale,
-                None => binding.push((what, multiplier / scale)),
-            }
-        }
+        let (binding, price) = binding(active, &multipliers);
         Self { residual, left_of_start, met, vanishes, binding, price }
     }
 }
