@@ -201,17 +201,7 @@ pub fn envelope(
         }
         Ok(gathered)
     };
-    let each = match &model.shapes[request.shape.0].kind {
-        ShapeKind::Hull { facets, .. } => facets.len(),
-        ShapeKind::Mesh { .. } => TRIANGLES_OF_MESH,
-        ShapeKind::Sphere { .. }
-        | ShapeKind::Capsule { .. }
-        | ShapeKind::Ring { .. }
-        | ShapeKind::Cylinder { .. }
-        | ShapeKind::Tyre { .. }
-        | ShapeKind::Plane { .. } => 1,
-    };
-    let most_distances = MOST_DISTANCES / each;
+    let most_distances = most_distances(&model.shapes[request.shape.0].kind);
     let left = Cell::new(most_distances);
     let of = |swept: &SweptShape, cell: f64| {
         let union = Union { swept, margin: request.margin };
@@ -259,12 +249,7 @@ pub fn envelope(
             }
             break;
         };
-        let union = Union { swept: &found.swept, margin: request.margin };
-        let every = finer.swept.corner_count() / MOST_CORNERS + 1;
-        let corners = (0..finer.swept.len()).flat_map(|k| finer.swept.corners(k)).step_by(every);
-        let points = surface.vertices.iter().chain(&surface.samples).copied();
-        let cores = Union { swept: &found.swept, margin: -found.swept.round() };
-        let (of_surface, of_corners) = (union.greatest(points), cores.greatest(corners));
+        let [of_surface, of_corners] = beyond(&found.swept, &finer.swept, &surface, request.margin);
         made = Some(surface);
         let is_sharp = of_surface.max(of_corners) > SHARP * rounding;
         between = if is_sharp { of_surface.max(of_corners) * OF_SHARP } else { of_surface * OF_ROUND };
@@ -275,17 +260,7 @@ pub fn envelope(
             break;
         }
     }
-    // The last coarse surface is the first candidate.
-    let (mut cell, mut surface) = (first_cell, Triangles::default());
-    while let Some(finer) = made {
-        surface = finer;
-        if surface.deviation <= half {
-            break;
-        }
-        cell *= 0.5;
-        // Without time for a finer surface this is the last one.
-        made = of(&found.swept, cell).ok().flatten();
-    }
+    let surface = refined(made, first_cell, half, |cell| of(&found.swept, cell).ok().flatten());
     if surface.triangles.is_empty() {
         let name = &model.shapes[request.shape.0].name;
         return Err(EnvelopeError::TooThin(RequestError::model(
@@ -303,6 +278,51 @@ pub fn envelope(
         stops: motions.iter().flat_map(Positions::stops).cloned().collect(),
         cost,
     })
+}
+
+/// Surface with cells so small that it deviates by at most `half`, or the last one that there is time for. The coarse
+/// surface is the first candidate.
+fn refined(
+    coarse: Option<Triangles>,
+    mut cell: f64,
+    half: f64,
+    of: impl Fn(f64) -> Option<Triangles>,
+) -> Triangles {
+    let (mut made, mut surface) = (coarse, Triangles::default());
+    while let Some(finer) = made {
+        surface = finer;
+        if surface.deviation <= half {
+            break;
+        }
+        cell *= 0.5;
+        made = of(cell);
+    }
+    surface
+}
+
+/// Maximum number of computed distances, by the cost of each.
+fn most_distances(kind: &ShapeKind) -> usize {
+    let each = match kind {
+        ShapeKind::Hull { facets, .. } => facets.len(),
+        ShapeKind::Mesh { .. } => TRIANGLES_OF_MESH,
+        ShapeKind::Sphere { .. }
+        | ShapeKind::Capsule { .. }
+        | ShapeKind::Ring { .. }
+        | ShapeKind::Cylinder { .. }
+        | ShapeKind::Tyre { .. }
+        | ShapeKind::Plane { .. } => 1,
+    };
+    MOST_DISTANCES / each
+}
+
+/// Largest distances by which the surface and the corners of finer poses are outside of the coarser ones.
+fn beyond(coarse: &SweptShape, finer: &SweptShape, surface: &Triangles, margin: f64) -> [f64; 2] {
+    let union = Union { swept: coarse, margin };
+    let every = finer.corner_count() / MOST_CORNERS + 1;
+    let corners = (0..finer.len()).flat_map(|k| finer.corners(k)).step_by(every);
+    let points = surface.vertices.iter().chain(&surface.samples).copied();
+    let cores = Union { swept: coarse, margin: -coarse.round() };
+    [union.greatest(points), cores.greatest(corners)]
 }
 
 /// Positions of a sweep at which the shape is taken.
