@@ -194,6 +194,7 @@ impl Checker<'_> {
 
     /// Resolves a change. HP0204, HP0218, HP0225 or HP0226 if a reference is unknown or cannot change in this way.
     fn change(&mut self, change: &ChangeDraft, owner: &str, here: Here, k: usize) -> Option<Vec<Change>> {
+        // One match: each kind of change has one case, with the checks of its own fields.
         let at = here.item("changes", k);
         let change = match change {
             ChangeDraft::Move { hardpoint: name, velocity } => {
