@@ -300,31 +300,42 @@ impl<'a> Composer<'_, '_, 'a> {
             self.origins.included.insert(name.to_owned(), self.files.tables[k].0.clone());
         }
         for (name, value) in parameters.into_iter().flatten() {
-            let there = part.table.get_mut("parameters").and_then(table_of);
-            let known = there.and_then(|t| t.get_mut(&*format!("{prefix}{}", name.get_ref())));
-            match known {
-                Some(there) => match there.get_mut() {
-                    DeValue::Table(table) => {
-                        table.insert(Spanned::new(name.span(), Cow::Borrowed("value")), value.clone());
-                    }
-                    _ => *there = value.clone(),
-                },
-                None => {
-                    let entries = part.table.get("parameters").and_then(|v| v.get_ref().as_table());
-                    let names = entries
-                        .into_iter()
-                        .flat_map(DeTable::keys)
-                        .map(|k| k.get_ref().strip_prefix(&*prefix).unwrap_or(k.get_ref()));
-                    let names: Vec<&str> = names.collect();
-                    let close = self.r.guess(name.get_ref(), names.into_iter());
-                    let message =
-                        format!("`{}` has no parameter named `{}`", shown(&asked), shown(name.get_ref()));
-                    self.r.report("HP0204", name.span(), message).help =
-                        close.map(|c| format!("did you mean `{c}`?"));
-                }
-            }
+            self.set_parameter(&mut part.table, (name, value), &prefix, &asked);
         }
         Some(part)
+    }
+
+    /// Gives a parameter of an included file a new value.
+    fn set_parameter(
+        &mut self,
+        part: &mut DeTable<'a>,
+        (name, value): (&Spanned<Cow<'a, str>>, &Value<'a>),
+        prefix: &str,
+        asked: &str,
+    ) {
+        let there = part.get_mut("parameters").and_then(table_of);
+        let known = there.and_then(|t| t.get_mut(&*format!("{prefix}{}", name.get_ref())));
+        match known {
+            Some(there) => match there.get_mut() {
+                DeValue::Table(table) => {
+                    table.insert(Spanned::new(name.span(), Cow::Borrowed("value")), value.clone());
+                }
+                _ => *there = value.clone(),
+            },
+            None => {
+                let entries = part.get("parameters").and_then(|v| v.get_ref().as_table());
+                let names = entries
+                    .into_iter()
+                    .flat_map(DeTable::keys)
+                    .map(|k| k.get_ref().strip_prefix(prefix).unwrap_or(k.get_ref()));
+                let names: Vec<&str> = names.collect();
+                let close = self.r.guess(name.get_ref(), names.into_iter());
+                let message =
+                    format!("`{}` has no parameter named `{}`", shown(asked), shown(name.get_ref()));
+                self.r.report("HP0204", name.span(), message).help =
+                    close.map(|c| format!("did you mean `{c}`?"));
+            }
+        }
     }
 
     /// Checks that units and gravity of all files are the same; a file without them has those of its included files.
