@@ -1,6 +1,11 @@
 //! The directions that data and dependencies may flow in (`ARCHITECTURE.md`), checked in the sources.
 
+mod code;
+mod counts;
+
 use std::path::{Path, PathBuf};
+
+use self::code::{below, production, uses};
 
 /// The rooms of the core, in the order of the walk: each may use those before it only. What somebody wrote (`draft`)
 /// knows the model that it means, and so comes after it; results are kept in `blocks`.
@@ -94,216 +99,29 @@ fn sources(folder: &Path) -> Vec<(PathBuf, String)> {
     out
 }
 
-/// True if a line names a room, in a path or in braces: `crate::{model::Model, run::Analysis}`.
-fn mentions(line: &str, room: &str) -> bool {
-    let braces = line.trim_start().starts_with("use crate::{") || line.contains(" use crate::{");
-    line.contains(&format!("crate::{room}::"))
-        || line.contains(&format!("crate::{room};"))
-        || braces
-            && [
-                format!("{{{room}::"),
-                format!(" {room}::"),
-                format!("{{{room},"),
-                format!(" {room},"),
-                format!(" {room}}}"),
-            ]
-            .iter()
-            .any(|w| line.contains(w.as_str()))
-}
-
 #[test]
 fn no_room_uses_a_later_one() {
     for (src, rooms, minimum) in HOUSES {
-        let src = Path::new(env!("CARGO_MANIFEST_DIR")).join(src);
+        let files = production(&Path::new(env!("CARGO_MANIFEST_DIR")).join(src));
         let mut looked_at = 0;
-        for (path, text) in sources(&src) {
-            let inside = path.strip_prefix(&src).unwrap();
-            let first = inside.iter().next().unwrap().to_str().unwrap().trim_end_matches(".rs");
-            if first == "lib" {
-                continue;
-            }
-            let room = rooms.iter().position(|r| *r == first);
+        for file in files.iter().filter(|file| !file.module.is_empty()) {
+            let place = |path: &str| rooms.iter().position(|room| below(path, room).is_some());
+            let name = &file.name;
             let room =
-                room.unwrap_or_else(|| panic!("{} is in no room: add it to its list", inside.display()));
+                place(&file.module).unwrap_or_else(|| panic!("{name} is in no room: add it to its list"));
             looked_at += 1;
-            // Tests of a room may use all of the house.
-            let (code, _) = text.split_once("#[cfg(test)]\nmod ").unwrap_or((&text, ""));
-            let code = code.lines().filter(|l| !l.trim_start().starts_with("//"));
-            for (later, name) in rooms.iter().enumerate().skip(room + 1) {
-                let is_used = code.clone().any(|l| mentions(l, name));
+            for path in uses(file) {
+                let used = place(&path).unwrap_or(0);
                 assert!(
-                    !is_used,
-                    "{} is in the room `{first}` and uses `{name}`, which comes later in the walk: {}",
-                    inside.display(),
-                    rooms[..=later].join(" -> ")
+                    used <= room,
+                    "{name} is in the room `{}` and uses `{path}`, which comes later in the walk: {}",
+                    rooms[room],
+                    rooms[..=used].join(" -> ")
                 );
             }
         }
-        assert!(looked_at > minimum, "only {looked_at} files found under {}", src.display());
+        assert!(looked_at > minimum, "only {looked_at} files found under {src}");
     }
-}
-
-/// Maximum number of patterns for some types of measures only (`let`, `matches!`), per room of the core or crate: they
-/// only fall. There are none over the types of elements, and no arm `_` over either.
-const MEASURE_WILDCARDS: &[(&str, usize)] = &[
-    ("design", 1),
-    ("draft", 6),
-    ("hardpoint-report", 3),
-    ("load", 7),
-    ("measure", 6),
-    ("model", 1),
-    ("run", 2),
-];
-
-/// Number of wildcards over an enum: matches with an arm `_`, and patterns for some variants only (`let`, `matches!`).
-fn wildcards(text: &str, of: &str) -> usize {
-    let text = text.split("#[cfg(test)]\nmod ").next().unwrap();
-    let lines: Vec<&str> = text.lines().filter(|l| !l.trim_start().starts_with("//")).collect();
-    let indent = |line: &str| line.len() - line.trim_start().len();
-    let (mut is_own, mut count) = (false, 0);
-    for (k, line) in lines.iter().enumerate() {
-        if line.starts_with("impl") {
-            is_own = line.trim_end_matches([' ', '{']).ends_with(&format!(" {of}"));
-        }
-        let names_variant =
-            |pattern: &str| pattern.contains(&format!("{of}::")) || is_own && pattern.contains("Self::");
-        if ["_ =>", "_ if "].iter().any(|arm| line.trim_start().starts_with(arm)) {
-            // The other arms of this match have the same indentation, and its head less.
-            let arms = lines[..k].iter().rev().take_while(|l| l.is_empty() || indent(l) >= indent(line));
-            let mut arms = arms.filter(|l| indent(l) == indent(line));
-            count += usize::from(arms.any(|l| names_variant(l.split("=>").next().unwrap())));
-        } else if let Some((_, pattern)) = line.split_once("matches!(") {
-            let more = lines[k + 1..].iter().take_while(|l| pattern.is_empty() && indent(l) > indent(line));
-            count += usize::from(names_variant(pattern) || more.into_iter().any(|l| names_variant(l)));
-        } else if let Some((_, pattern)) = line.split_once("let ") {
-            count += usize::from(names_variant(pattern.split(" = ").next().unwrap()));
-        }
-    }
-    count
-}
-
-#[test]
-fn matches_over_elements_and_measures_name_every_type() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let crates = std::fs::read_dir(root.join("crates")).unwrap().map(|entry| entry.unwrap().path());
-    let mut found = std::collections::BTreeMap::<String, [usize; 2]>::new();
-    for folder in crates.chain([root.join("python")]) {
-        let (src, name) = (folder.join("src"), folder.file_name().unwrap().to_str().unwrap());
-        for (path, text) in sources(&src) {
-            let first = path.strip_prefix(&src).unwrap().iter().next().unwrap().to_str().unwrap();
-            let room = if name == "hardpoint" { first.trim_end_matches(".rs") } else { name };
-            let count = |of: [&str; 2]| of.map(|of| wildcards(&text, of)).iter().sum::<usize>();
-            let [elements, measures] = found.entry(room.to_owned()).or_default();
-            *elements += count(["ElementKind", "ElementKindDraft"]);
-            *measures += count(["MeasureKind", "MeasureKindDraft"]);
-        }
-    }
-    assert!(found.len() > 20, "only {} rooms found", found.len());
-    for (room, [elements, measures]) in found {
-        let most = MEASURE_WILDCARDS.iter().find(|(name, _)| *name == room).map_or(0, |(_, most)| *most);
-        assert_eq!(elements, 0, "{room}: use a property of the types in place of a wildcard over elements");
-        assert!(measures <= most, "{room}: {measures} wildcards over measures, at most {most} are allowed");
-    }
-}
-
-#[test]
-fn wildcards_over_types_are_counted() {
-    let text = "impl Model {
-    fn dimension(&self) {
-        match kind {
-            MeasureKind::Angle { .. } => 1,
-            _ => 0,
-        }
-        let MeasureKind::Angle { .. } = kind else { return };
-        matches!(
-            kind,
-            MeasureKind::Angle { .. }
-        )
-    }
-}
-";
-    assert_eq!(wildcards(text, "MeasureKind"), 3);
-    assert_eq!(wildcards(text, "ElementKind"), 0);
-    assert_eq!(wildcards(&text.replace("            _ => 0,\n", ""), "MeasureKind"), 2);
-    let own = text.replace("Model", "MeasureKind").replace("MeasureKind::", "Self::");
-    assert_eq!(wildcards(&own, "MeasureKind"), 3);
-}
-
-/// Identifiers right after a prefix: `super::a` has one, `super::{a, b::C}` three.
-fn names_after<'t>(text: &'t str, prefix: &str) -> Vec<&'t str> {
-    let ends = |c: char| !c.is_alphanumeric() && c != '_';
-    let each = text.split(prefix).skip(1).flat_map(|rest| match rest.strip_prefix('{') {
-        Some(list) => list.split(['}', ';']).next().unwrap().split(ends).collect(),
-        None => vec![rest.split(ends).next().unwrap()],
-    });
-    each.filter(|name| !name.is_empty()).collect()
-}
-
-/// Number of files of each room that are part of a circle: a file uses another one, which uses it again in the end.
-/// Rooms without circles are not listed; the numbers only fall.
-const IN_CIRCLES: [(&str, usize); 9] = [
-    ("draft", 3),
-    ("expression", 2),
-    ("law", 6),
-    ("load", 3),
-    ("model", 3),
-    ("number", 2),
-    ("run", 3),
-    ("sensitivity", 3),
-    ("topology", 2),
-];
-
-#[test]
-fn circles_inside_rooms_only_shrink() {
-    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut found = Vec::new();
-    let rooms =
-        HOUSES.into_iter().flat_map(|(src, rooms, _)| rooms.iter().map(move |room| (here.join(src), *room)));
-    for (src, room) in rooms.filter(|(src, room)| src.join(room).is_dir()) {
-        // A folder inside a room counts as one file, like the module that it is.
-        let module = |path: &Path| {
-            let first = path.strip_prefix(src.join(room)).unwrap().iter().next().unwrap();
-            first.to_str().unwrap().trim_end_matches(".rs").to_owned()
-        };
-        let files: Vec<(String, String)> = sources(&src.join(room))
-            .into_iter()
-            .map(|(path, text)| {
-                let code = text.split("#[cfg(test)]\nmod ").next().unwrap().lines();
-                let code: Vec<&str> = code.filter(|l| !l.trim_start().starts_with("//")).collect();
-                (module(&path), code.join("\n"))
-            })
-            .collect();
-        let doors = files.iter().find(|(module, _)| module == "mod").map_or("", |(_, text)| text);
-        // What `mod.rs` re-exports, with the module that has it.
-        let exports: Vec<(&str, &str)> = doors
-            .split(" use ")
-            .skip(1)
-            .filter_map(|line| line.split(';').next()?.split_once("::"))
-            .flat_map(|(module, names)| names.split(|c: char| !c.is_alphanumeric()).map(move |n| (n, module)))
-            .collect();
-        let mut uses = petgraph::graph::DiGraph::<&str, ()>::new();
-        let mut modules: Vec<&str> = files.iter().map(|(module, _)| module.as_str()).collect();
-        modules.retain(|module| *module != "mod");
-        modules.sort_unstable();
-        modules.dedup();
-        let nodes: Vec<_> = modules.iter().map(|module| uses.add_node(module)).collect();
-        let node = |name: &str| Some(nodes[modules.iter().position(|module| *module == name)?]);
-        for (module, text) in &files {
-            let Some(user) = node(module) else { continue };
-            let prefixes = ["super::".to_owned(), format!("crate::{room}::")];
-            for name in prefixes.iter().flat_map(|prefix| names_after(text, prefix)) {
-                let exported = exports.iter().find(|(n, _)| *n == name).and_then(|(_, module)| node(module));
-                if let Some(used) = node(name).or(exported).filter(|used| *used != user) {
-                    uses.update_edge(user, used, ());
-                }
-            }
-        }
-        let circles = petgraph::algo::tarjan_scc(&uses).into_iter().filter(|circle| circle.len() > 1);
-        let count: usize = circles.map(|circle| circle.len()).sum();
-        found.extend((count > 0).then_some((room, count)));
-    }
-    found.sort_unstable();
-    assert_eq!(found, IN_CIRCLES, "fewer: write the new number; more: files use one another in a circle");
 }
 
 #[test]
