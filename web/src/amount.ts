@@ -4,8 +4,10 @@ export const ANGLES: Readonly<Record<string, number>> = { deg: Math.PI / 180, '�
 const KNOWN = 'mm, cm, m, in, deg or rad'
 
 /** `12`, `2,5`, `.5e-3`, `1/2`, `1 1/2`; then a unit. */
-const AMOUNT =
-  /^(?<step>[+-]=)?\s*(?<sign>[+-]?)\s*(?:(?:(?<whole>\d+)\s+)?(?<top>\d+)\s*\/\s*(?<bottom>\d+)|(?<decimal>(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:e[+-]?\d+)?))\s*(?<unit>\p{L}*|°|\p{L}.*)$/iu
+const FRACTION = /(?:(?<whole>\d+)\s+)?(?<top>\d+)\s*\/\s*(?<bottom>\d+)/.source
+const DECIMAL = /(?<decimal>(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:e[+-]?\d+)?)/.source
+const UNIT = /(?<unit>\p{L}*|°|\p{L}.*)/u.source
+const AMOUNT = new RegExp(`^(?<step>[+-]=)?\\s*(?<sign>[+-]?)\\s*(?:${FRACTION}|${DECIMAL})\\s*${UNIT}$`, 'iu')
 
 /** Number that a reader typed, in the unit of its field. */
 export interface Amount {

@@ -166,7 +166,8 @@ class HeatMap {
     const cell = (quantity: Quantity, variable: Variable) => {
       const found = this.#cells.at(quantity, variable)
       if (!found) return el('td', {}, '·')
-      const style = `background: ${scale.of(found.share)}; color: ${strong(found.share) ? css('--heat-text') : css('--ink')}`
+      const ink = strong(found.share) ? css('--heat-text') : css('--ink')
+      const style = `background: ${scale.of(found.share)}; color: ${ink}`
       return el('td', { style }, found.share === 0 ? '' : number(found.extreme, 2))
     }
     const table = (part: Quantity[]) =>

@@ -69,8 +69,8 @@ export function help(): HTMLDialogElement {
     el(
       'p',
       { class: 'lead' },
-      'This page shows a mechanism, its motion, and how every result depends on the design. Change a variable or drag ' +
-        'a point: everything is solved again. The page needs no connection.',
+      'This page shows a mechanism, its motion, and how every result depends on the design. Change a variable or ' +
+        'drag a point: everything is solved again. The page needs no connection.',
     ),
     el('h2', {}, 'Page'),
     pairs(PAGE, 'kbd'),

@@ -240,8 +240,10 @@ export class PathPoints {
     this.#actions.forEach((button) => (button.disabled = missing > 0))
     this.#summary.textContent =
       missing > 0
-        ? `Click the points of the path in their order; ${missing} more at least. Handles are dragged; Delete removes one.`
-        : `${points.length} points, ${isClosed ? 'closed' : 'open'}. Linkages are sought whose point follows them in this order.`
+        ? `Click the points of the path in their order; ${missing} more at least. ` +
+          'Handles are dragged; Delete removes one.'
+        : `${points.length} points, ${isClosed ? 'closed' : 'open'}. ` +
+          'Linkages are sought whose point follows them in this order.'
     this.#follow()
   }
 
