@@ -156,7 +156,14 @@ fn ended(file: &ModelFile, stop: &Stop, who: &str, left: Vec<String>) -> Diagnos
             Closing::Driver(d) => (Section::Drivers, d.0),
             Closing::Coupler(c) => (Section::Couplers, c),
         }),
-        _ => stop.joints.first().map(|j| (Section::Joints, j.0)),
+        StopKind::Limit
+        | StopKind::BranchChange
+        | StopKind::TooFar { .. }
+        | StopKind::NothingHolds { .. }
+        | StopKind::LimitLoad { .. }
+        | StopKind::NoEquilibrium
+        | StopKind::Unstable { .. }
+        | StopKind::TooStiff { .. } => stop.joints.first().map(|j| (Section::Joints, j.0)),
     };
     // An end stop ends a motion as the user wants.
     let is_requested =

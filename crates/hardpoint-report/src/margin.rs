@@ -1,10 +1,10 @@
 //! Margin of a motion to singular positions, in words.
 
 use hardpoint::model::{Driver, JointId, Model};
-use hardpoint::motion::{Motion, StopKind};
+use hardpoint::motion::{Motion, SingularityKind};
 use hardpoint::topology::Topology;
 use hardpoint_file::Units;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use crate::course::MarginCourse;
 use crate::figures::{number, rounded, some_in_words, some_of, symbol};
@@ -36,7 +36,8 @@ pub struct MarginFact {
     pub drivers_until: Vec<DriverTravel>,
     /// Kind of the singular position: `limit`, where the loop cannot be closed any further, or `two_motions`, where two
     /// motions meet.
-    pub singular_kind: Option<&'static str>,
+    #[serde(serialize_with = "kind")]
+    pub singular_kind: Option<SingularityKind>,
     /// Margin at every output time, or at the stored ones of a long run (`steps.kept_every` of the summary).
     pub series: Vec<f64>,
     /// Duration from the first to the last output time, s.
@@ -88,10 +89,7 @@ impl MarginFact {
                 };
                 moving.map(fact).collect()
             }),
-            singular_kind: kept.beyond.as_ref().map(|b| match b.kind {
-                StopKind::Limit => "limit",
-                _ => "two_motions",
-            }),
+            singular_kind: kept.beyond.as_ref().map(|b| b.kind),
             series: kept.margins.iter().map(|m| m.value).collect(),
             span: course.span[1] - course.span[0],
         })
@@ -142,15 +140,24 @@ impl MarginFact {
         // This extrapolation from the end of the motion is accurate to about two digits.
         let travel = |d: &DriverTravel| format!("{} {}", rounded(d.travel, 2), d.unit).trim_end().to_owned();
         let drivers: Vec<String> = drivers.map(|d| format!("{} of `{}`", travel(d), d.driver)).collect();
-        let what = match self.singular_kind {
-            Some("limit") => "its loop cannot be closed any further",
-            _ => "two motions meet there",
+        let what = match self.singular_kind? {
+            SingularityKind::Limit => "its loop cannot be closed any further",
+            SingularityKind::TwoMotions => "two motions meet there",
         };
         let until =
             if drivers.is_empty() { String::new() } else { format!(" ({})", some_of(&drivers, ", ")) };
         let after = rounded(after, 2);
         Some(format!("A singular position is estimated to lie about {after} s{until} beyond the end; {what}"))
     }
+}
+
+/// Name of a kind in the results.
+fn kind<S: Serializer>(kind: &Option<SingularityKind>, to: S) -> Result<S::Ok, S::Error> {
+    let name = kind.map(|kind| match kind {
+        SingularityKind::Limit => "limit",
+        SingularityKind::TwoMotions => "two_motions",
+    });
+    name.serialize(to)
 }
 
 /// Names on one line; of a long list the first few and the number of the others.

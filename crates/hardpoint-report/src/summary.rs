@@ -153,9 +153,10 @@ impl StopFact {
         });
         Some(Self {
             code: stop.code(),
-            message: match stop.kind {
-                StopKind::DoesNotAssemble => stop.headline(model),
-                _ => format!("{}{}", stop.headline(model), driver_values(file, stop)),
+            message: if stop.kind == StopKind::DoesNotAssemble {
+                stop.headline(model)
+            } else {
+                format!("{}{}", stop.headline(model), driver_values(file, stop))
             },
             last_time: stop.last_time,
             failed_time: stop.failed_time,

@@ -212,7 +212,12 @@ fn coordinate_of(variable: &DesignVariable) -> Option<(HardpointId, usize, f64)>
     for change in &variable.changes {
         match change {
             Change::Move(m) if m.hardpoint == hardpoint => velocity += m.velocity,
-            _ => return None,
+            Change::Move(_)
+            | Change::Marker(_)
+            | Change::Length(_)
+            | Change::Parameter(_)
+            | Change::Law(_)
+            | Change::Field(_) => return None,
         }
     }
     let part = |axis: usize| velocity.dot(Vec3::AXES[axis]);

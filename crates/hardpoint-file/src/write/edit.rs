@@ -337,7 +337,7 @@ impl Edit<'_> {
             let own = |c: &Change| match c {
                 Change::Marker(c) => c.joint.0 == j,
                 Change::Field(c) => c.joint.0 == j,
-                _ => false,
+                Change::Move(_) | Change::Length(_) | Change::Parameter(_) | Change::Law(_) => false,
             };
             let by = self.of(own);
             if by.is_empty() {

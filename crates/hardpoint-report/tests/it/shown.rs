@@ -4,6 +4,7 @@
 use std::fmt::Write;
 
 use hardpoint::law::{ConstantSpeed, Harmonic, Law};
+use hardpoint::motion::SingularityKind;
 use hardpoint::space::Vec3;
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Solution};
@@ -314,7 +315,7 @@ fn a_singular_position_just_beyond_the_end_is_reported() {
     assert!(solution.stop.is_none(), "{:?}", solution.stop);
     let margin = summary.margin.as_ref().unwrap();
     assert!((margin.singular_after.unwrap() - 1e-5).abs() < 1e-8, "{margin:?}");
-    assert_eq!(margin.singular_kind, Some("limit"));
+    assert_eq!(margin.singular_kind, Some(SingularityKind::Limit));
     let ahead = margin.ahead().unwrap();
     assert!(ahead.starts_with("A singular position is estimated to lie about 1e-5 s ("), "{ahead}");
     assert!(ahead.ends_with("beyond the end; its loop cannot be closed any further"), "{ahead}");

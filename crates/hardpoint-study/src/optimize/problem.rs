@@ -460,7 +460,17 @@ impl<'m> Problem<'m> {
             (Reduction::Range, None) if solution.motion.len() > 1 => {
                 point.peaks.extend([peaks(1.0), peaks(-1.0)]);
             }
-            _ => {
+            (
+                Reduction::Least
+                | Reduction::Greatest
+                | Reduction::Range
+                | Reduction::Change
+                | Reduction::Mean
+                | Reduction::Integral
+                | Reduction::Value(_)
+                | Reduction::Slope(_),
+                None,
+            ) => {
                 let (x, d) = by(value, &d);
                 point.plain.push(x, d);
             }

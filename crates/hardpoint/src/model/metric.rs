@@ -125,7 +125,14 @@ impl Model {
         match metric.take {
             Reduction::Slope(_) => of.over(self.abscissa(metric)),
             Reduction::Integral => of.times(self.abscissa(metric)),
-            _ => of,
+            Reduction::Least
+            | Reduction::Greatest
+            | Reduction::Range
+            | Reduction::Change
+            | Reduction::Mean
+            | Reduction::Rms(_)
+            | Reduction::RmsAtPoints(_)
+            | Reduction::Value(_) => of,
         }
     }
 }

@@ -216,10 +216,19 @@ pub struct SingularPosition {
     pub after: f64,
     /// Travel of each driver until then, m or rad.
     pub travel: Vec<f64>,
-    /// [`StopKind::Limit`], or [`StopKind::BranchChange`] where two motions meet.
-    pub kind: StopKind,
+    /// Kind of the position.
+    pub kind: SingularityKind,
     /// The joints of the loop.
     pub joints: Vec<JointId>,
+}
+
+/// Kind of a singular position.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SingularityKind {
+    /// The loop cannot be closed any further.
+    Limit,
+    /// Two motions meet.
+    TwoMotions,
 }
 
 /// Effort of a solution, and the residuals of the constraints.

@@ -13,7 +13,7 @@ use super::parts::PlanGeometry;
 use super::path::Path;
 use super::predictor::Predictor;
 use super::turns::TurnCounter;
-use super::{SingularPosition, SolverStatistics, Stop, StopKind};
+use super::{SingularPosition, SingularityKind, SolverStatistics, Stop, StopKind};
 
 /// Power of the response below which a singular position is a limit: it is 1/2 at a limit, and 1 where two motions
 /// meet.
@@ -153,7 +153,7 @@ impl<'m> Stepper<'m> {
         Some(SingularPosition {
             after: ahead.distance,
             travel: travel.collect(),
-            kind: if limit { StopKind::Limit } else { StopKind::BranchChange },
+            kind: if limit { SingularityKind::Limit } else { SingularityKind::TwoMotions },
             joints: mechanism.topology.joints_of_block(ahead.block),
         })
     }

@@ -11,7 +11,7 @@ use crate::model::{
     Axes, AxleMeasure, BodyId, CaseId, ClearanceId, Combination, Dimension, Direction, DriverId, Element,
     ElementId, JacobianValue, JointId, KnownOrders, Measure, MeasureKind, Metric, NumberId, OrientationAngle,
     OutputSource, PointId, Ray, ReactionPart, Reduction, Solid, SpringTable, WheelId, WheelMeasure,
-    WheelPoint,
+    WheelPoint, loads, of_bodies,
 };
 use crate::space::Vec3;
 
@@ -211,7 +211,12 @@ impl Checker<'_> {
             Reduction::Slope(at) => Reduction::Slope(si(x, *at)),
             Reduction::Rms(target) => Reduction::Rms(points(target)),
             Reduction::RmsAtPoints(target) => Reduction::RmsAtPoints(points(target)),
-            take => take.clone(),
+            take @ (Reduction::Least
+            | Reduction::Greatest
+            | Reduction::Range
+            | Reduction::Change
+            | Reduction::Mean
+            | Reduction::Integral) => take.clone(),
         };
         let rises = |points: &mut dyn Iterator<Item = f64>| {
             let points: Vec<f64> = points.collect();
@@ -453,7 +458,11 @@ impl Checker<'_> {
                 }
                 true
             }
-            _ => true,
+            of_bodies!()
+            | loads!()
+            | MeasureKind::Compliance { .. }
+            | MeasureKind::Wheel { .. }
+            | MeasureKind::Axle { .. } => true,
         }
     }
 
