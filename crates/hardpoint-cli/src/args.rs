@@ -1126,7 +1126,7 @@ pub enum TableForm {
     Parquet,
 }
 
-/// Rule of the allocation of tolerances.
+/// Rule of the allocation of tolerances, in the order of [`AllocationRule::NAMED`].
 #[derive(Clone, Copy, Debug, Deserialize, ValueEnum)]
 #[serde(rename_all = "snake_case")]
 pub enum Allocate {
@@ -1137,10 +1137,7 @@ pub enum Allocate {
 
 impl Allocate {
     pub fn rule(self) -> AllocationRule {
-        match self {
-            Self::Rss => AllocationRule::Rss { sigmas: ToleranceSettings::SIGMAS },
-            Self::WorstCase => AllocationRule::Worst,
-        }
+        AllocationRule::NAMED[self as usize]
     }
 }
 

@@ -157,8 +157,9 @@ fn error_of(
     };
     if let Some(name) = name {
         let dimension = outputs.iter().find(|(output, _)| output == name).map(|(_, dimension)| *dimension);
-        let dimension = dimension.ok_or_else(|| format!("`{name}` is not an output of the map"))?;
-        return Ok(vec![(ErrorScope::Output(name.to_owned()), of_dimension(dimension)?)]);
+        let scope = ErrorScope::Output(name.to_owned());
+        let dimension = dimension.ok_or_else(|| scope.describe_missing())?;
+        return Ok(vec![(scope, of_dimension(dimension)?)]);
     }
     if written.is_empty() {
         let mut all = Vec::new();

@@ -134,7 +134,7 @@ pub(crate) fn requested(
 /// Returns the options of a tolerance study.
 pub(crate) fn tolerance(file: &ModelFile) -> Result<ToleranceOffer, EngineError> {
     let (model, units) = (&file.model, file.units);
-    let settings = model.tolerancing.clone().or_else(|| ToleranceSettings::of_variables(model));
+    let settings = model.tolerance_settings();
     let scattered = |t: &hardpoint::model::Tolerance| {
         let first = &model.variables[t.variables[0].0];
         ToleranceChoice {

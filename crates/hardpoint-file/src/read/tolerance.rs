@@ -107,9 +107,9 @@ pub(super) fn tolerance(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
     let tolerances = tolerances(r, &fields, raw);
     let correlations = correlations(r, &fields, raw);
     let limits = limits_of_tolerances(r, &fields, raw);
-    let allocation = rule.map(|rule| match rule {
-        0 => AllocationRule::Rss { sigmas: keep.unwrap_or(ToleranceSettings::SIGMAS) },
-        _ => AllocationRule::Worst,
+    let allocation = rule.map(|rule| match AllocationRule::NAMED[rule] {
+        AllocationRule::Rss { sigmas } => AllocationRule::Rss { sigmas: keep.unwrap_or(sigmas) },
+        AllocationRule::Worst => AllocationRule::Worst,
     });
     raw.draft.tolerancing = Some(ToleranceSettingsDraft {
         tolerances,

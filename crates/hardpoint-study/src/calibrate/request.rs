@@ -2,7 +2,7 @@
 
 use hardpoint::measure::outputs;
 use hardpoint::model::{
-    DriverId, Measurements, Model, Offset, OffsetSource, ToleranceSettings, VariableId, VariablePrior,
+    DriverId, Measurements, Model, Offset, OffsetSource, VariableId, VariablePrior,
 };
 use hardpoint::topology::Formulation;
 
@@ -171,9 +171,8 @@ fn priors(
 
 /// Adds the tolerances of all variables without a prior of their own.
 fn add_tolerances(model: &Model, variables: &[VariableId], prior: &mut Prior) -> Result<(), RequestError> {
-    let settings = model.tolerancing.clone().or_else(|| ToleranceSettings::of_variables(model));
     let mut any = false;
-    for tolerance in settings.iter().flat_map(|s| &s.tolerances) {
+    for tolerance in model.tolerance_settings().into_iter().flat_map(|s| s.tolerances) {
         let sigma = moments(tolerance.scatter, tolerance.variables.len(), tolerance.reach).sigma;
         for variable in tolerance.variables.iter().filter(|v| variables.contains(v)) {
             any = true;

@@ -67,6 +67,16 @@ pub enum ErrorScope {
     Dimension(Dimension),
 }
 
+impl ErrorScope {
+    /// Sentence about a map without such an output.
+    pub fn describe_missing(&self) -> String {
+        match self {
+            Self::Output(name) => format!("`{name}` is not an output of the map"),
+            Self::Dimension(_) => "no output of the map has the unit of a permitted error".to_owned(),
+        }
+    }
+}
+
 impl Request {
     /// Outputs of a model, by names: measures of positions, and coordinates of points; all such measures if there are
     /// no names.
@@ -158,13 +168,10 @@ impl Request {
             ErrorScope::Dimension(dimension) => !known.iter().any(|(.., d)| d == dimension),
         };
         if let Some((scope, _)) = errors.iter().find(|(scope, _)| is_unused(scope)) {
-            let what = match scope {
-                ErrorScope::Output(name) => format!("`{name}` is not an output of the map"),
-                ErrorScope::Dimension(_) => {
-                    "no output of the map has the unit of a permitted error".to_owned()
-                }
-            };
-            return Err(RequestError::invalid(what, "name the output, or leave out the error"));
+            return Err(RequestError::invalid(
+                scope.describe_missing(),
+                "name the output, or leave out the error",
+            ));
         }
         let is_repeated = |k: usize| errors[..k].iter().any(|(scope, _)| *scope == errors[k].0);
         if let Some(k) = (0..errors.len()).find(|k| is_repeated(*k)) {

@@ -43,8 +43,7 @@ impl Request {
     /// A [`RequestError`] if no variable has a tolerance, there is no result that it could affect, or an override is
     /// invalid.
     pub fn of(model: &Model, overrides: &Overrides) -> Result<Self, RequestError> {
-        let settings = model.tolerancing.clone().or_else(|| ToleranceSettings::of_variables(model));
-        let mut settings = settings.ok_or_else(|| {
+        let mut settings = model.tolerance_settings().ok_or_else(|| {
             RequestError::model(
                 "no design variable has a tolerance",
                 "add `tolerance = 0.1` to variables in `[design]` or `[parameters]` (docs/tolerance.md)",

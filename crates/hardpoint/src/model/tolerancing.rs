@@ -112,6 +112,13 @@ impl AllocationRule {
     pub const NAMED: [Self; 2] = [Self::Rss { sigmas: ToleranceSettings::SIGMAS }, Self::Worst];
 }
 
+impl Model {
+    /// Settings of tolerance studies: those of the model, or else [`ToleranceSettings::of_variables`].
+    pub fn tolerance_settings(&self) -> Option<ToleranceSettings> {
+        self.tolerancing.clone().or_else(|| ToleranceSettings::of_variables(self))
+    }
+}
+
 impl ToleranceSettings {
     /// Default number of designs: the standard deviation is then known to 1 %.
     pub const SAMPLES: usize = 10_000;
