@@ -48,7 +48,7 @@ const CEILINGS: &[(&str, [usize; 5])] = &[
 const CLOSED: [&str; 6] =
     ["ElementKind", "ElementKindDraft", "MeasureKind", "MeasureKindDraft", "Reduction", "StopKind"];
 
-/// What a count has found: names with their share of it.
+/// Names that a count has found, with their shares of it.
 type Found = Vec<(String, usize)>;
 
 #[test]
