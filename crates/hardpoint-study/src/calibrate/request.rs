@@ -1,9 +1,7 @@
 //! Request for a calibration.
 
 use hardpoint::measure::outputs;
-use hardpoint::model::{
-    DriverId, Measurements, Model, Offset, OffsetSource, VariableId, VariablePrior,
-};
+use hardpoint::model::{DriverId, Measurements, Model, Offset, OffsetSource, VariableId, VariablePrior};
 use hardpoint::topology::Formulation;
 
 use super::prior::parameters_of;
