@@ -124,7 +124,8 @@ fn take(r: &mut Reader<'_>, fields: &Fields<'_>) -> Option<Reduction> {
             Reduction::RmsAtPoints(target(r, fields, field)?)
         }
         "value" => Reduction::Value(r.number_of(fields, "at")?),
-        _ => Reduction::Slope(r.number_of(fields, "at")?),
+        "slope" => Reduction::Slope(r.number_of(fields, "at")?),
+        _ => unreachable!("`{word}` is not read"),
     })
 }
 
