@@ -876,8 +876,8 @@ fn extreme<T: Real>(
     best.map(|(value, t)| (at_kink(y, value).map_or(value, T::constant), t))
 }
 
-/// The kink from which this value of a curve without rates cannot be told. There a magnitude has its least value, which
-/// no change of the design makes less.
+/// The kink from which this value of a curve without rates cannot be distinguished. There a magnitude has its
+/// least value, which no change of the design makes less.
 fn at_kink<T: Real>(y: &SampledCurve<'_, T>, value: T) -> Option<f64> {
     if y.orders > 1 || y.kinks.is_empty() {
         return None;
