@@ -86,7 +86,7 @@ fn metrics_of_all_cases_are_written_printed_and_first_on_a_page() {
     let column = |name: &str| header.iter().position(|h| *h == name).unwrap_or_else(|| panic!("{header:?}"));
     let table = csv::Reader::from_reader(text.as_bytes()).into_records();
     let rows: Vec<csv::StringRecord> = table.map(Result::unwrap).collect();
-    assert_eq!(rows.len(), 16);
+    assert_eq!(rows.len(), 17);
     let row = |metric: &str| rows.iter().find(|row| &row[0] == metric).unwrap();
     let number = |row: &csv::StringRecord, name: &str| row[column(name)].parse::<f64>().ok();
 
@@ -102,6 +102,13 @@ fn metrics_of_all_cases_are_written_printed_and_first_on_a_page() {
     let by_place = fact["sensitivities"].as_array().unwrap().iter().find(|s| s["variable"] == "lca_rear_x");
     assert_eq!(by_place.unwrap()["value"].as_f64(), number(braking, "d lca_rear_x [per mm]"));
 
+    // Toe at both ends of the way from driving to braking is that of the two cases of one force each.
+    for name in ["value", "d lca_rear_x [per mm]", "d lca_rear_radial"] {
+        let of = |metric: &str| number(row(metric), name).unwrap();
+        let (tracking, steer) = (of("compliance_steer_tracking"), of("braking_steer") - of("driving_steer"));
+        assert!((tracking - steer).abs() <= 1e-9 * steer.abs(), "{name}: {tracking}, {steer}");
+    }
+
     // A wheel that moves has a rigid value, near to the elastic one.
     let toe = row("toe_over_travel");
     let [elastic, rigid] = ["value", "rigid"].map(|name| number(toe, name).unwrap());
@@ -112,7 +119,7 @@ fn metrics_of_all_cases_are_written_printed_and_first_on_a_page() {
     assert!(all.contains("braking_steer") && all.contains("report of all cases"));
     let page = bench.page("out/report.html");
     let metrics = &page["metrics"];
-    assert_eq!(metrics["rows"].as_array().unwrap().len(), 16);
+    assert_eq!(metrics["rows"].as_array().unwrap().len(), 17);
     assert_eq!(metrics["rows"][0][0], "toe_per_aligning_torque_in_phase", "the order of the file");
     let own = bench.page("out/braking/report.html");
     assert_eq!(own["metrics"]["rows"].as_array().unwrap().len(), 2);
