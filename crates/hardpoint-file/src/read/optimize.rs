@@ -32,7 +32,7 @@ pub(crate) const OPTIMIZE: Table = table! {
     /// True if the searches also start with all drivers in the opposite sense, in every assembly.
     or("false") "both_senses": Shape::Flag, "true";
     /// Maximum number of iterations of a search.
-    or("100") "max_iterations": Shape::Count(OptimizationSettings::MOST), "100";
+    or("1000") "max_iterations": Shape::Count(OptimizationSettings::MOST), "100";
 };
 pub(super) const GOAL: Table = table! {
     /// A metric to minimise, or to bring to a target.

@@ -39,7 +39,7 @@ impl Default for OptimizationSettings {
             starts: 1,
             other_assemblies: false,
             both_senses: false,
-            iterations: 100,
+            iterations: 1000,
             trade_off: Vec::new(),
         }
     }
