@@ -560,6 +560,11 @@ impl OptimizeFacts {
             self.variables.iter().filter(|v| v.binds.is_some()).map(|v| v.name.as_str()).collect();
         match search.status() {
             Status::Optimal if best_is_met(found) => "all goals are met: no improvement is possible".into(),
+            Status::Optimal if search.best().is_some_and(|b| b.optimality.is_corner) => {
+                "an optimum at a corner of the goals: their gradient jumps there, and no small change of the design is \
+                 better"
+                    .into()
+            }
             Status::Optimal if binding.is_empty() => "an optimum: to first order, no small change of the design is better".into(),
             Status::Optimal if binding.len() == 1 => {
                 format!("optimum found; {} is at its bound, and a wider one would improve it", binding[0])

@@ -83,7 +83,7 @@ struct ActiveSet<'a> {
 
 impl<'a> ActiveSet<'a> {
     fn new(problem: &Problem<'_>, point: &'a Point, limit_scales: &'a [f64], damping: f64) -> Self {
-        let spans: Vec<f64> = problem.bounds.iter().map(|[low, high]| high - low).collect();
+        let spans = problem.spans();
         let (n, strongest) = (spans.len(), point.strongest(&spans));
         Self {
             point,

@@ -16,6 +16,7 @@
 //! The searches may also start from the other assemblies of the mechanism and with its drivers in the opposite sense:
 //! each [`Variant`] is a model of its own with the same variables, goals and limits.
 
+mod corner;
 mod gauss_newton;
 mod optima;
 mod optimality;
@@ -443,6 +444,12 @@ fn search(
             search.optimality.residual = 0.0;
         }
         search.status = run.status(&search);
+        if search.status == Status::Stuck
+            && let Some(optimality) = run.at_corner()
+        {
+            search.optimality = optimality;
+            search.status = Status::Optimal;
+        }
     }
     search.refused =
         memory.refused.take().into_iter().map(|(design, why)| failed_design(design, why)).collect();

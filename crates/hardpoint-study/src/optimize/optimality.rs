@@ -53,6 +53,8 @@ pub struct Optimality {
     pub left_of_start: f64,
     /// True if all goals are squares that vanish to round-off, so that no improvement is possible.
     pub met: bool,
+    /// True if the gradient jumps at the design, and gradients beside it balance each other.
+    pub is_corner: bool,
     /// True if goals that are not squares vanish to round-off, as far as their gradient at the start says what that is:
     /// an optimum if searches find nothing better from there.
     pub(super) vanishes: bool,
@@ -76,13 +78,13 @@ impl Rows {
 }
 
 /// Derivatives by fractions of the bounds.
-fn by_parts(d: &[f64], spans: &[f64]) -> Vec<f64> {
+pub(super) fn by_parts(d: &[f64], spans: &[f64]) -> Vec<f64> {
     d.iter().zip(spans).map(|(d, span)| d * span).collect()
 }
 
 /// Active bounds and limits: gradient by fractions of the bounds, constraint, and size of one of its SI units in the
 /// unit of that gradient.
-fn active_constraints(
+pub(super) fn active_constraints(
     problem: &Problem<'_>,
     point: &Point,
     limit_scales: &[f64],
@@ -153,7 +155,7 @@ fn binding(
 impl Optimality {
     pub(super) fn of(problem: &Problem<'_>, point: &Point, limit_scales: &[f64], steepest: f64) -> Self {
         let n = problem.bounds.len();
-        let spans: Vec<f64> = problem.bounds.iter().map(|[low, high]| high - low).collect();
+        let spans = problem.spans();
         let gradient = by_parts(&point.smooth().gradient(n), &spans);
         // Groups of candidates, and the derivative of the objective by the maximum of each.
         let groups: Vec<(&Rows, f64)> = point
@@ -198,7 +200,7 @@ impl Optimality {
             !point.has_only_squares() && point.goal_size() <= MET * weight && left <= FLAT * weight;
         let (residual, left_of_start) = if met { (0.0, 0.0) } else { (left / scale, left / weight) };
         let (binding, price) = binding(active, &multipliers);
-        Self { residual, left_of_start, met, vanishes, binding, price }
+        Self { residual, left_of_start, met, is_corner: false, vanishes, binding, price }
     }
 }
 
@@ -227,7 +229,7 @@ impl Point {
     }
 
     /// Scale of the gradient: its size if no terms cancelled.
-    fn gradient_scale(&self, spans: &[f64], steepest: f64) -> f64 {
+    pub(super) fn gradient_scale(&self, spans: &[f64], steepest: f64) -> f64 {
         let strongest = self.strongest(spans);
         let squares = 2.0 * strongest * self.misfit().max(MET * strongest);
         let others = if self.has_only_squares() {

@@ -320,6 +320,11 @@ impl<'m> Problem<'m> {
         design
     }
 
+    /// Lengths of the bounds of the searched variables.
+    pub fn spans(&self) -> Vec<f64> {
+        self.bounds.iter().map(|[low, high]| high - low).collect()
+    }
+
     /// Searched variables as fractions of their bounds.
     pub fn parts(&self, design: &[f64]) -> Vec<f64> {
         let part = |(v, [low, high]): (&VariableId, &[f64; 2])| (design[v.0] - low) / (high - low);

@@ -57,11 +57,6 @@ impl<'p> Memory<'p> {
     pub fn interrupted(&self) -> bool {
         !(self.more)()
     }
-
-    /// Width of the bounds of every searched variable.
-    fn spans(&self) -> Vec<f64> {
-        self.problem.bounds.iter().map(|[low, high]| high - low).collect()
-    }
 }
 
 /// Solver between iterations.
@@ -76,7 +71,7 @@ pub(super) fn least_squares<'p>(
     start: &[f64],
     point: &Point,
 ) -> Option<LeastSquares<'p>> {
-    let spans = memory.spans();
+    let spans = memory.problem.spans();
     let size = point.misfits.values.iter().map(|r| r * r).sum::<f64>().sqrt();
     let scale = if size > 0.0 { 1.0 / size } else { 1.0 };
     let same = spans.clone();
@@ -327,7 +322,7 @@ pub(super) struct ScaledSequential<'p> {
 
 impl<'p> ScaledSequential<'p> {
     pub fn new(memory: &'p Memory<'p>, start: &[f64], point: &Point, limit_scales: &[f64]) -> Option<Self> {
-        let (n, spans) = (start.len(), memory.spans());
+        let (n, spans) = (start.len(), memory.problem.spans());
         let by_parts = |d: &[f64]| d.iter().zip(&spans).map(|(d, span)| d * span).collect::<Vec<f64>>();
         let gradient = by_parts(&point.gradient(n));
         let steepest = gradient.iter().fold(0.0, |most: f64, g| most.max(g.abs()));

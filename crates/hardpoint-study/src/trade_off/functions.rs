@@ -86,7 +86,7 @@ pub(super) struct Scale {
 impl State {
     pub fn new(problem: &Problem<'_>, limit_scales: &[f64], x: Vec<f64>, point: Point) -> Self {
         let n = x.len();
-        let spans: Vec<f64> = problem.bounds.iter().map(|[low, high]| high - low).collect();
+        let spans = problem.spans();
         let by_parts = |d: &[f64], factor: f64| -> Vec<f64> {
             d.iter().zip(&spans).map(|(d, span)| factor * d * span).collect()
         };
