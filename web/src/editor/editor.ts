@@ -288,6 +288,7 @@ function editing(schema: Options['schema']): Extension {
     EditorView.contentAttributes.of({
       'aria-label': 'Model, TOML. Press Escape, then Tab to leave the text.',
       'data-testid': 'model-text',
+      tabindex: '0',
       spellcheck: 'false',
     }),
     // The Tab key continues to move the focus for those who came by it; typing or clicking into the text edits it.

@@ -21,7 +21,9 @@ export class Curves {
     private readonly tool?: (figure: Figure) => HTMLElement | undefined,
     former?: readonly FigureMemory[],
   ) {
-    this.element = el('section', { class: 'curves', 'aria-label': 'Curves', 'data-testid': 'curves' }, this.#list)
+    const heading = el('h2', { class: 'hidden' }, 'Curves')
+    const attributes = { class: 'curves', 'aria-label': 'Curves', 'data-testid': 'curves' }
+    this.element = el('section', attributes, heading, this.#list)
     if (former && former.length > 0) for (const memory of former) this.#recall(memory)
     else this.#open()
     state.onChoice(() => this.#show())

@@ -64,6 +64,7 @@ export function tabs(label: string, list: Tab[]): Tabs {
   const element = el(
     'section',
     { class: 'tabs', 'aria-label': label },
+    el('h2', { class: 'hidden' }, label),
     el('div', { role: 'tablist', 'aria-label': label }, ...buttons),
     ...panels,
   )
