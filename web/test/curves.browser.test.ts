@@ -26,33 +26,32 @@ const change = (name: string, by: number) => slide(page, `[data-testid=variable-
 const numberOf = (text: string) => Number(text.replaceAll('−', '-'))
 
 describe('after a change', () => {
-  test('the metrics have the numbers of the cards, or the heading of the design that theirs belong to', async () => {
+  test('the metrics have the numbers of the cards at once, and what needs sensitivities names its design', async () => {
     await open('front_axle')
-    const card = async () => numberOf(await page.getByTestId('card-bump_steer').getByTestId('card-value').innerText())
-    const fact = () =>
-      page
-        .getByTestId('metrics')
-        .locator('tr', { hasText: /^bump_steer/ })
-        .first()
-        .innerText()
-    const before = await card()
+    /** Row and card of a metric, and the name above the other columns; waits until the card differs. */
+    const read = (card: string) =>
+      page.waitForFunction((former) => {
+        const row = [...document.querySelectorAll('[data-testid=metrics] tbody tr')].find((row) =>
+          row.textContent.startsWith('bump_steer'),
+        )
+        const card = document.querySelector('[data-testid=card-bump_steer] [data-testid=card-value]')!.textContent
+        const heading = document.querySelector('[data-testid=metrics] [data-testid=of-design]')?.textContent
+        return card === former ? null : { value: row!.children[1].textContent, card, heading }
+      }, card)
+    const both = async (former = '') => (await (await read(former)).jsonValue())!
+    const isSame = ({ value, card }: { value: string; card: string }) =>
+      Math.abs(numberOf(value.split(' ')[0]) - numberOf(card)) < 1e-5
     await page.getByTestId('tab-metrics').click()
-    const heading = page.getByTestId('metrics').getByTestId('of-design')
-    expect(await heading.isVisible()).toBe(false)
-    await page.getByTestId('tab-variables').click()
-    await change('upper_ball_x', 10)
-    await page.getByTestId('tab-metrics').click()
-    await page.waitForFunction(
-      (before) => document.querySelector('[data-testid=card-bump_steer] .figure-now')!.textContent !== before,
-      String(before),
-    )
-    const isCurrent = async () => (await fact()).includes(String(await card()))
-    // At every moment the number is the present one, or is under a heading.
-    expect((await heading.isVisible()) || (await isCurrent())).toBe(true)
+    const before = await both()
+    expect([before.heading, isSame(before)]).toEqual([undefined, true])
+    await Promise.all([
+      change('upper_ball_x', 10),
+      both(before.card).then((during) => expect([during.heading, isSame(during)]).toEqual(['Original design', true])),
+    ])
     await page.waitForFunction(() => document.getElementById('page')!.dataset.settled === 'yes')
-    expect(await card()).not.toBe(before)
-    expect(await isCurrent()).toBe(true)
-    expect(await heading.isVisible()).toBe(false)
+    const after = await both()
+    expect([after.heading, isSame(after)]).toEqual([undefined, true])
+    expect(after.value).not.toBe(before.value)
   })
 
   test('cards show what it did to the range over the motion, where the value at ride height stays', async () => {
