@@ -112,6 +112,62 @@ describe.each([
   })
 })
 
+/** Fields above plots whose selection is wider than they are, less the arrow. */
+const cutFields = (page: Page) =>
+  page.locator('.plot figcaption select').evaluateAll((all: HTMLSelectElement[]) => {
+    const context = document.createElement('canvas').getContext('2d')!
+    return all.flatMap((field) => {
+      const { fontWeight, fontSize, fontFamily, paddingLeft, paddingRight } = getComputedStyle(field)
+      context.font = `${fontWeight} ${fontSize} ${fontFamily}`
+      const name = field.selectedOptions[0].text
+      const room = field.clientWidth - parseFloat(paddingLeft) - parseFloat(paddingRight) - 16
+      return context.measureText(name).width > room + 1 ? [name] : []
+    })
+  })
+
+describe('on a laptop', () => {
+  test('the fields above plots show their selection whole', async () => {
+    const { page } = await visit(browser, models.four_bar, { viewport: { width: 1440, height: 900 } })
+    expect(await page.getByTestId('plot-0').getByTestId('over').locator('option:checked').innerText()).toBe(
+      'over crank_angle',
+    )
+    expect(await cutFields(page)).toEqual([])
+    await page.context().close()
+  })
+
+  test('a badge is below the name where there is no room beside it', async () => {
+    const { page } = await visit(browser, models.delta, { viewport: { width: 1440, height: 900 } })
+    const names = page.locator('.variables li:has(.badge) .name')
+    expect(await names.count()).toBeGreaterThan(0)
+    const cut = await names.evaluateAll((all) => all.filter((name) => name.scrollWidth > name.clientWidth).length)
+    expect(cut).toBe(0)
+    await page.context().close()
+  })
+})
+
+describe.each([
+  [390, 844],
+  [844, 390],
+])('on a phone of %d by %d, while points are moved', (width, height) => {
+  test('cards do not overlap, all of the pane is in sight, and the view has room', async () => {
+    const options = { viewport: { width, height }, hasTouch: true, isMobile: true }
+    const { page } = await visit(browser, models.macpherson, options)
+    await page.waitForFunction(() => document.getElementById('page')!.dataset.engine === 'ready')
+    await page.getByTestId('grips').click()
+    const over = await page
+      .locator('.card:visible')
+      .evaluateAll((all) => all.flatMap((card) => (card.scrollWidth > card.clientWidth ? [card.textContent] : [])))
+    expect(over).toEqual([])
+    for (const control of ['snap', 'grip-reset', 'grip-done']) {
+      const { x, y, width: wide, height: tall } = (await page.getByTestId(control).boundingBox())!
+      expect(x + wide, control).toBeLessThanOrEqual(width)
+      expect(y + tall, control).toBeLessThanOrEqual(height)
+    }
+    expect((await page.getByTestId('view-canvas').boundingBox())!.height).toBeGreaterThan(170)
+    await page.context().close()
+  })
+})
+
 describe('with the keyboard only', () => {
   test('every control is reached, shows that it has the focus, and can be left', async () => {
     const { page, complaints } = await visit(browser, models.macpherson, { viewport: { width: 1440, height: 900 } })

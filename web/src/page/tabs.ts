@@ -16,7 +16,7 @@ export interface Tabs {
 }
 
 /** Screens with one section at a time, as in the style sheet. */
-const NARROW = '(max-width: 700px)'
+const NARROW = '(max-width: 700px), (max-height: 500px)'
 /** Event of the page when another panel or section is selected. */
 export const FRONT = 'front'
 
