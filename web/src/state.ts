@@ -392,7 +392,7 @@ export class State {
 
   /** Sentence on why the present design is not the requested one; empty if it is. */
   get shortfall(): string {
-    return this.#isShort ? `The design stops before the requested one (${this.refusal}).` : ''
+    return this.#isShort ? `${this.refusal}.` : ''
   }
 
   /**

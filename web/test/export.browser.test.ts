@@ -73,6 +73,24 @@ describe('what a reader takes away', () => {
     expect(Math.abs(size.height - SHARP * height)).toBeLessThanOrEqual(SHARP)
   })
 
+  test('the menu has a row for each curve with its formats, and paper before them', async () => {
+    const { page } = visited
+    await page.getByTestId('export').click()
+    const menu = page.getByTestId('export-menu')
+    const rows = await menu.locator(':scope > *').allInnerTexts()
+    const titles = await page.locator('.plot h3').allTextContents()
+    expect(rows.slice(3, 6).map((row) => row.split('\n')[0])).toEqual(['Print or PDF…', 'View', 'Motion'])
+    const [, ...curves] = rows.slice(6)
+    expect(curves.length).toBeLessThanOrEqual(titles.length)
+    for (const row of curves) expect(row).toMatch(/\nPNG\nSVG$/)
+    const focused = () => page.evaluate(() => document.activeElement!.getAttribute('aria-label'))
+    await page.keyboard.press('End')
+    expect(await focused()).toMatch(/ as SVG$/)
+    await page.keyboard.press('ArrowUp')
+    expect(await focused()).toMatch(/ as PNG$/)
+    await page.keyboard.press('Escape')
+  })
+
   test('a curve as PNG is a picture', async () => {
     expect(sizeOf(await taken('export-plot-png')).width).toBeGreaterThan(100)
   })

@@ -126,12 +126,18 @@ const cutFields = (page: Page) =>
   })
 
 describe('on a laptop', () => {
-  test('the fields above plots show their selection whole', async () => {
+  test('the fields above plots show their selection whole, and the variables of a search are all in sight', async () => {
     const { page } = await visit(browser, models.four_bar, { viewport: { width: 1440, height: 900 } })
     expect(await page.getByTestId('plot-0').getByTestId('over').locator('option:checked').innerText()).toBe(
       'over crank_angle',
     )
     expect(await cutFields(page)).toEqual([])
+    await page.waitForFunction(() => document.getElementById('page')!.dataset.engine === 'ready')
+    await page.getByTestId('open-optimise').click()
+    await page.getByTestId('search-B_x').waitFor()
+    const isCut = (table: Element) => table.scrollHeight > table.clientHeight
+    expect(await page.locator('.study .scroll').first().evaluate(isCut)).toBe(false)
+    expect(await page.getByTestId('variable-note').innerText()).toBe('Moves B along x')
     await page.context().close()
   })
 

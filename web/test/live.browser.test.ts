@@ -143,7 +143,9 @@ describe('a hardpoint of the strut in the hand', () => {
     await page.waitForFunction(() => document.querySelector('[data-testid=refusal]')!.textContent !== '')
     await settled(page)
     expect(await coordinate('x')).toBeLessThan(before + 9_999)
-    expect(await page.getByTestId('refusal').innerText()).toMatch(/cannot move beyond t = [\d.]+ s|cannot be assembled/)
+    expect(await page.getByTestId('refusal').innerText()).toMatch(
+      /Locks at t = [\d.]+ s; shown is the last|cannot be assembled/,
+    )
   })
 })
 

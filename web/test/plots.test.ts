@@ -79,14 +79,15 @@ describe('columns of exported curves', () => {
 
   test('name the quantity, also in a plot of several', () => {
     const subject = { quantity: 0, order: 0 as const, also: [1] }
-    expect(headings(valueContent(new State(report), subject))).toEqual(['toe', 'camber'])
+    const values = valueContent(new State(report), subject)
+    expect([values.title, ...headings(values)]).toEqual(['toe, camber', 'toe', 'camber'])
     const changes = valueContent(new State(report), { ...subject, difference: true })
-    expect(headings(changes)).toEqual(['Δ toe', 'Δ camber'])
+    expect([changes.title, ...headings(changes)]).toEqual(['Δ toe, camber', 'Δ toe', 'Δ camber'])
   })
 
   test('name the variable of each derivative, whichever is selected', () => {
     const content = sensitivityContent(new State(report), { quantity: 0, order: 0 })
-    expect(content.title).toBe('d toe')
+    expect(content.title).toBe('Sensitivities of toe')
     expect(headings(content).sort()).toEqual(['d toe / d st_y', 'd toe / d ti_z'])
   })
 })

@@ -137,7 +137,9 @@ describe('a hardpoint', () => {
     await page.waitForFunction(() => !document.querySelector('[data-testid=refusal]')!.classList.contains('hint'))
     await settled(page)
     expect(await field('x').inputValue()).toMatch(/^-?\d+(\.\d{1,2})?$/)
-    expect(await page.getByTestId('refusal').innerText()).toMatch(/cannot move beyond t = [\d.]+ s|cannot be assembled/)
+    expect(await page.getByTestId('refusal').innerText()).toMatch(
+      /Locks at t = [\d.]+ s; shown is the last|cannot be assembled/,
+    )
   })
 
   test('that locks under an entry has the value of the design, typed again as well, and the reason is visible', async () => {
@@ -161,7 +163,7 @@ describe('a hardpoint', () => {
       })
       await settled(page)
     }
-    const reason = /The design stops before the requested one \(.*cannot (move beyond t = [\d.]+ s|be assembled)/
+    const reason = /(Locks at t = [\d.]+ s|cannot be assembled.*); shown is the last position that works\./
     for (const entry of [
       () => enter(change, '9000'),
       () => enter(change, '9000'),

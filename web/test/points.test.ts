@@ -3,6 +3,7 @@ import { describe, expect, test } from 'vitest'
 import type { MovableHardpoint } from '../src/engine/protocol'
 import { facingPlane, Positions, type SharedVariable } from '../src/studio/moves'
 import { pasted } from '../src/studio/points'
+import { stopReason } from '../src/studio/stops'
 
 const grip = (name: string, place: [number, number, number]): MovableHardpoint => {
   const at = (axis: string) => ({ variable: `${name}.${axis}`, sign: 1, bounds: null })
@@ -124,5 +125,18 @@ describe('rows of a spreadsheet', () => {
       places: [],
       problems: ['There is no hardpoint `top`.', '`left`, y: `x` is not a number with a unit.'],
     })
+  })
+})
+
+describe('the reason why a design is not the requested one', () => {
+  test('is about the design in hand, with the time at which it locks', () => {
+    const locks = 'the changed design: the mechanism cannot move beyond t = 0.776887 s'
+    expect(stopReason(locks, true)).toBe('Locks at t = 0.777 s; shown is the last position that works')
+    expect(
+      stopReason('the changed design: the mechanism locks at t = 0.5 s: joint `a` cannot stay closed', false),
+    ).toBe('Locks at t = 0.5 s: joint `a` cannot stay closed')
+    expect(stopReason('the mechanism passes a dead point at t = 1 s', false)).toBe(
+      'The mechanism passes a dead point at t = 1 s',
+    )
   })
 })

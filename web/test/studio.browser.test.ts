@@ -199,11 +199,17 @@ describe('a study', () => {
     await page.evaluate(() => window.studies[0].tell(2, 3, '  start 1  objective 1', [{ name: 'rack_z', by: 3 }]))
     await page.getByTestId('optimise-start').first().click()
     expect(await page.getByTestId('optimise-start').allInnerTexts()).toEqual(['nominal', 'start 1'])
-    expect(await page.evaluate(() => window.previews)).toEqual([1, 2, 3, 2].map(change))
+    const best = [1, 2, 3].map((by) => ({ name: 'optimisation, best so far', change: change(by) }))
+    const start = (name: string, by: number) => ({ name: `optimisation, ${name}`, change: change(by) })
+    expect(await page.evaluate(() => window.previews)).toEqual([...best, start('nominal', 2)])
     await end(found)
     await page.getByTestId('optimise-start').last().click()
     await page.getByTestId('optimise-discard').click()
-    expect((await page.evaluate(() => window.previews)).slice(4)).toEqual([change(2), change(3), undefined])
+    expect((await page.evaluate(() => window.previews)).slice(4)).toEqual([
+      { name: 'optimised design', change: change(2) },
+      start('start 1', 3),
+      undefined,
+    ])
   })
 
   test('of a design that has changed since says so', async () => {

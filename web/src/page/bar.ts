@@ -1,12 +1,12 @@
 import { el } from '../dom'
 import type { Design } from '../report'
 import type { State } from '../state'
-import { menu, type Item } from './menu'
+import { menu, type Item, type ItemRow } from './menu'
 
 /** Controls of the bar next to the title. */
 export interface Offers {
   find?: HTMLElement
-  exports: () => Item[]
+  exports: () => (Item | ItemRow)[]
   help: () => void
 }
 

@@ -55,6 +55,8 @@ const CHANGED = 'changed'
 const NO_VARIABLES = 'The model has no design variables: `[design]` of its text adds them.'
 /** Number of sensitivities that are drawn with that of the selected variable. */
 const FEW = 5
+/** Names of quantities that fit into a title. */
+const NAMED = 3
 /** Standard deviations between the middle of a tolerance band and its edges. */
 const SIGMAS = 3
 const DASHED = [7, 5]
@@ -79,14 +81,15 @@ export function valueContent(state: State, subject: Subject): Content {
   const { report, present } = state
   const quantity = report.quantities[index]
   const name = orderedName(quantity, order)
+  const quantities = [index, ...also.filter((k) => k !== index)].map((k) => report.quantities[k])
+  const sign = difference ? 'Δ ' : ''
   const content: Content = {
-    title: difference ? `Δ ${name}` : name,
+    title: sign + listed(quantities.map((one) => orderedName(one, order))),
     unit: quantity.units[order],
     lines: [],
     equal: subject.path,
   }
   if (quantity.curves[order].length === 0) return { ...content, message: unknown(name) }
-  const quantities = [index, ...also.filter((k) => k !== index)].map((k) => report.quantities[k])
   const several = quantities.length > 1
   const [compared, ...others] = comparedDesigns(state)
   const rigid = rigidDesign(state)
@@ -119,7 +122,7 @@ export function valueContent(state: State, subject: Subject): Content {
       const own = several ? orderedName(one, order) : ''
       const alone = design.name || orderedName(one, order)
       const label = !several ? alone : plain ? own : `${own}, ${design.name}`
-      const column = (difference ? 'Δ ' : '') + orderedName(one, order)
+      const column = sign + orderedName(one, order)
       const heading = design.name ? `${column}: ${design.name}` : column
       const color = several ? hue(k) : (design.color ?? css('--former'))
       const dash = several && plain ? PATTERNS[k % PATTERNS.length] : design.dash
@@ -142,7 +145,14 @@ export function valueContent(state: State, subject: Subject): Content {
     for (const [k, { label, x, y }] of measured.entries())
       content.lines.push({ label, color: hue(k + 5), curve: y, over: x, free: true, marks: withGaps(y) })
   content.lines = content.lines.filter(({ curve }) => curve.length > 0)
+  // Predictions, bands and targets are of the first quantity.
+  for (const line of content.lines) line.heading ??= `${sign}${name}: ${line.label}`
   return overOther(state, over, content)
+}
+
+/** Names of a title; of many, the first and the number of the others. */
+function listed(names: string[]): string {
+  return names.length <= NAMED ? names.join(', ') : `${names[0]} and ${names.length - 1} others`
 }
 
 function presentDesign(state: State): Drawn {
@@ -300,7 +310,7 @@ export function sensitivityContent(state: State, subject: Subject): Content {
   const selected = report.variables[choice.variable]
   const name = orderedName(quantity, order)
   // Of a text that has lost its variables, the figures of the former page stay.
-  if (!selected) return { title: `d ${name}`, unit: '', lines: [], message: NO_VARIABLES }
+  if (!selected) return { title: `Sensitivities of ${name}`, unit: '', lines: [], message: NO_VARIABLES }
   const all = effects(report, subject.quantity, order)
   const own = all.find(({ variable }) => variable === selected)
   const of = state.outdated ? ` (${state.outdated.toLowerCase()})` : ''
@@ -308,7 +318,8 @@ export function sensitivityContent(state: State, subject: Subject): Content {
   const shown = peers.filter(({ variable, share }, rank) => variable === selected || (rank < FEW && share > 0))
   const heading = (variable: Variable) => derivativeName(quantity, order, variable) + of
   // Of several variables, the legend names each.
-  const title = own && shown.length === 1 ? heading(selected) : `d ${name}${of}`
+  const title =
+    own && shown.length === 1 ? `Sensitivity of ${name} to ${selected.name}${of}` : `Sensitivities of ${name}${of}`
   const content: Content = { title, unit: derivativeUnit(quantity, order, selected), lines: [] }
   if (quantity.curves[order].length === 0) return { ...content, unit: '', message: unknown(name) }
   if (!own) {

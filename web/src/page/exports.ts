@@ -11,56 +11,19 @@ import type { State } from '../state'
 import { type Part, stepsWithin } from '../zoom'
 import { composePrint } from './composer'
 import type { Figure } from './figure'
-import type { Item } from './menu'
+import type { Item, ItemRow } from './menu'
 
 /** Pixels of an exported picture per pixel of the page. */
 const SHARP = 2
 
 /** Items that can be exported from the present view. */
-export function exports(state: State, figures: Figure[], view: View | undefined): Item[] {
+export function exports(state: State, figures: Figure[], view: View | undefined): (Item | ItemRow)[] {
   const { report } = state
   const name = report.file.replace(/\.[^.]*$/, '') || 'report'
   const drawn = figures.filter(({ plot }) => plot.canvas)
   return [
-    ...(view
-      ? [
-          {
-            name: 'View as PNG',
-            testId: 'export-view-png',
-            run: async () => save(await view.picture(SHARP), `${name} view.png`),
-          },
-          { name: 'View as SVG', testId: 'export-view-svg', run: () => save(view.vectors(), `${name} view.svg`) },
-          ...(hasVideo() && state.lastStep > 0
-            ? [
-                {
-                  name: 'Motion as video',
-                  testId: 'export-video',
-                  run: async () => {
-                    const { blob, ending } = await motionVideo(view.canvas, state)
-                    save(blob, `${name}.${ending}`)
-                  },
-                },
-              ]
-            : []),
-          { name: 'Motion as glTF', testId: 'export-gltf', run: async () => save(await view.motion(), `${name}.glb`) },
-        ]
-      : []),
-    ...drawn.flatMap(({ plot }) => {
-      const { title } = plot.content
-      const vectors = () => plotSvg(plot.content, report.times, report.units.time, paper())
-      return [
-        {
-          name: `${title} as PNG`,
-          testId: 'export-plot-png',
-          run: async () => save(await pngOf(vectors(), SHARP), `${name} ${title}.png`),
-        },
-        {
-          name: `${title} as SVG`,
-          testId: 'export-plot-svg',
-          run: () => save(vectors(), `${name} ${title}.svg`),
-        },
-      ]
-    }),
+    { name: 'Print or PDF…', testId: 'export-print', run: () => composePrint(document.getElementById('page')!) },
+    ...(view ? viewRows(state, view, name) : []),
     ...(drawn.length > 0
       ? [
           {
@@ -70,7 +33,44 @@ export function exports(state: State, figures: Figure[], view: View | undefined)
           },
         ]
       : []),
-    { name: 'Print or PDF…', testId: 'export-print', run: () => composePrint(document.getElementById('page')!) },
+    ...drawn.map(({ plot }) => {
+      const { title } = plot.content
+      const vectors = () => plotSvg(plot.content, report.times, report.units.time, paper())
+      const items = [
+        {
+          name: 'PNG',
+          testId: 'export-plot-png',
+          run: async () => save(await pngOf(vectors(), SHARP), `${name} ${title}.png`),
+        },
+        { name: 'SVG', testId: 'export-plot-svg', run: () => save(vectors(), `${name} ${title}.svg`) },
+      ]
+      return { name: title, items }
+    }),
+  ]
+}
+
+/** Picture and motion of the view. */
+function viewRows(state: State, view: View, name: string): ItemRow[] {
+  const pictures = [
+    {
+      name: 'PNG',
+      testId: 'export-view-png',
+      run: async () => save(await view.picture(SHARP), `${name} view.png`),
+    },
+    { name: 'SVG', testId: 'export-view-svg', run: () => save(view.vectors(), `${name} view.svg`) },
+  ]
+  const video = {
+    name: 'video',
+    testId: 'export-video',
+    run: async () => {
+      const { blob, ending } = await motionVideo(view.canvas, state)
+      save(blob, `${name}.${ending}`)
+    },
+  }
+  const scene = { name: 'glTF', testId: 'export-gltf', run: async () => save(await view.motion(), `${name}.glb`) }
+  return [
+    { name: 'View', items: pictures },
+    { name: 'Motion', items: hasVideo() && state.lastStep > 0 ? [video, scene] : [scene] },
   ]
 }
 

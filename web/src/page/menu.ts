@@ -8,8 +8,14 @@ export interface Item {
   run: () => void | Promise<void>
 }
 
+/** Entries in one row after the name of what they share. */
+export interface ItemRow {
+  name: string
+  items: Item[]
+}
+
 /** A button that opens a list of actions; errors are shown in place of the list until the reader goes on. */
-export function menu(title: string, testId: string, items: () => Item[]): HTMLElement {
+export function menu(title: string, testId: string, entries: () => (Item | ItemRow)[]): HTMLElement {
   const list = el('div', {
     class: 'menu',
     role: 'menu',
@@ -32,24 +38,36 @@ export function menu(title: string, testId: string, items: () => Item[]): HTMLEl
   const element = el('div', { class: 'dropdown' }, button, list, failure)
   const open = () => {
     failure.hidden = true
-    list.replaceChildren(
-      ...items().map((item) =>
-        el(
-          'button',
-          { type: 'button', role: 'menuitem', tabindex: -1, 'data-testid': item.testId, onclick: () => run(item) },
-          item.name,
-        ),
-      ),
-    )
+    list.replaceChildren(...entries().map((entry) => ('items' in entry ? row(entry) : itemButton(entry, entry.name))))
     list.hidden = false
     button.setAttribute('aria-expanded', 'true')
-    ;(list.firstElementChild as HTMLElement | null)?.focus()
+    list.querySelector('button')?.focus()
   }
+  const itemButton = ({ name, testId, run }: Item, label: string) =>
+    el(
+      'button',
+      {
+        type: 'button',
+        role: 'menuitem',
+        tabindex: -1,
+        'data-testid': testId,
+        'aria-label': label === name ? undefined : label,
+        onclick: () => start(label, run),
+      },
+      name,
+    )
+  const row = ({ name, items }: ItemRow) =>
+    el(
+      'div',
+      { class: 'menu-row', role: 'group', 'aria-label': name },
+      el('span', { title: name, 'aria-hidden': 'true' }, name),
+      ...items.map((item) => itemButton(item, `${name} as ${item.name}`)),
+    )
   const close = () => {
     list.hidden = true
     button.setAttribute('aria-expanded', 'false')
   }
-  const run = async ({ name, run }: Item) => {
+  const start = async (name: string, run: Item['run']) => {
     close()
     button.focus()
     try {
@@ -67,12 +85,12 @@ export function menu(title: string, testId: string, items: () => Item[]): HTMLEl
     }
   }
   element.addEventListener('keydown', (event) => {
-    const entries = [...list.children] as HTMLElement[]
-    const at = entries.indexOf(document.activeElement as HTMLElement)
+    const buttons = [...list.querySelectorAll('button')]
+    const at = buttons.indexOf(document.activeElement as HTMLButtonElement)
     const to = { ArrowDown: at + 1, ArrowUp: at - 1, Home: 0, End: -1 }[event.key]
     if (list.hidden) return
     if (event.key === 'Escape') close(), button.focus()
-    else if (to !== undefined) entries.at(to % entries.length)?.focus()
+    else if (to !== undefined) buttons.at(to % buttons.length)?.focus()
     else return
     event.preventDefault()
   })

@@ -97,7 +97,7 @@ export function variables(state: State, limits?: VariableLimits): HTMLElement {
     resetAll.hidden = !state.changed
     const variable = report.variables[choice.variable]
     shortfall.replaceChildren(...prose(state.shortfall && `${state.shortfall} `))
-    description.replaceChildren(...prose(statusOf(state) + (variable?.note || variable?.description || '')))
+    description.replaceChildren(...prose(statusOf(state) + capitalised(variable?.note || variable?.description || '')))
     if (choice.variable === shown) return
     shown = choice.variable
     const { element } = rows[shown]
@@ -117,6 +117,11 @@ export function variables(state: State, limits?: VariableLimits): HTMLElement {
   sync()
   const head = el('div', { class: 'head' }, el('h2', { class: 'hidden' }, 'Variables'), about, search, resetAll)
   return el('section', { class: 'variables', 'aria-label': 'Variables', 'data-testid': 'variables' }, head, list, note)
+}
+
+/** A sentence with a capital letter, unless it begins with a name. */
+function capitalised(text: string): string {
+  return text.replace(/^[a-z]+(?= )/, ([first, ...rest]) => first.toUpperCase() + rest.join(''))
 }
 
 function statusOf(state: State): string {

@@ -21,6 +21,16 @@ import './studio.css'
 /** Lines of a study under way that are shown. */
 const LINES = 5
 
+/** Names of the designs of a search, while it is under way and of its result. */
+const BEST_SO_FAR = 'optimisation, best so far'
+const OPTIMISED = 'optimised design'
+
+/** A design of a study, by changes of the text that is studied. */
+export interface StudyDesign {
+  name: string
+  change: VariableSetting[]
+}
+
 /** Parts of the page that the panes use. */
 export interface StudyHost {
   studies: Studies
@@ -32,8 +42,8 @@ export interface StudyHost {
   unwritten: () => string
   /** Shows the design that a study found; its changes count from the text that was studied. */
   apply: (result: StudyResult, studied: string) => void
-  /** Shows a design of a study under way next to the present one, or none any more. */
-  preview: (change: VariableSetting[] | undefined, studied: string) => void
+  /** Shows a design of a study next to the present one, or none any more. */
+  preview: (design: StudyDesign | undefined, studied: string) => void
   goals: GoalHost
   /** Metrics of the curves that were drawn: they are goals unless they are deselected. */
   targets: ReadonlySet<string>
@@ -209,7 +219,7 @@ function pane<Offer, Request>(
     }
     const view = progressView(name, steps(request), isSeveral(request), {
       cancel: () => running.cancel(),
-      preview: (change) => host.preview(change, text),
+      preview: (design) => host.preview(design, text),
     })
     show(...view.elements)
     let running: Running<StudyResult>
@@ -236,7 +246,7 @@ function pane<Offer, Request>(
       if (!touched) refresh()
     }
     // What the search found stays next to the present design until it is applied or discarded.
-    host.preview(result.change ?? undefined, text)
+    host.preview(result.change ? { name: OPTIMISED, change: result.change } : undefined, text)
     const view = resultView(name, result, { apply: () => (leave(), host.apply(result, text)), leave })
     stale = () => (view.since.hidden = host.text() === text && host.unwritten() === '')
     stale()
@@ -333,7 +343,7 @@ function progressView(
   name: string,
   steps: number,
   isSeveral: boolean,
-  host: { cancel: () => void; preview: (change: VariableSetting[] | undefined) => void },
+  host: { cancel: () => void; preview: (design: StudyDesign) => void },
 ) {
   const testId = name.toLowerCase()
   const bar = el('progress', {
@@ -364,14 +374,14 @@ function progressView(
   )
   const show = (change: VariableSetting[], button: HTMLButtonElement) => {
     for (const one of starts.querySelectorAll('button')) one.setAttribute('aria-pressed', String(one === button))
-    host.preview(change)
+    host.preview({ name: `optimisation, ${button.textContent}`, change })
   }
   const lines: string[] = []
   return {
     elements: [bar, log, starts, el('div', { class: 'acts' }, cancel, clock)],
     update: (done: number, total: number | null, line: string, change: VariableSetting[] | null = null) => {
       if (total !== null) Object.assign(bar, { max: Math.max(total, 1), value: done })
-      if (change) host.preview(change)
+      if (change) host.preview({ name: BEST_SO_FAR, change })
       if (line === '' || line === lines.at(-1)) return
       lines.push(line)
       log.textContent = lines.slice(-LINES).join('\n')

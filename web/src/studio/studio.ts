@@ -36,12 +36,11 @@ import { connect } from './server'
 import { separateMotions } from './motions'
 import { type ServerBar, serverBar } from './server_bar'
 import { linkedSession, linkOf, type SavedDesign, type Session, Storage } from './session'
-import { type OptimizePane, optimizePane, type StudyPane, tolerancePane } from './studies'
+import { stopReason } from './stops'
+import { type OptimizePane, optimizePane, type StudyDesign, type StudyPane, tolerancePane } from './studies'
 import { targetToml } from './target'
 import { Workers } from './workers'
 
-/** Name of the design of a study under way. */
-const PREVIEW = 'optimisation, best so far'
 /** Milliseconds without a change after which text and sensitivities follow the design. */
 const REST = 200
 /** Milliseconds between a change and its being kept by the browser. */
@@ -90,7 +89,9 @@ export class Studio {
   /** Metrics of the curves that were drawn. */
   readonly #targets = new Set<string>()
   /** A design of a study that is to be drawn next; undefined if none is waiting or being solved. */
-  #previewed?: { change: VariableSetting[] | undefined }
+  #previewed?: { design: StudyDesign | undefined }
+  /** The design of a study that is drawn next to the present one. */
+  #preview?: Design
   /** The design that was compared with before. */
   #compared?: number
   #opened?: OpenReply
@@ -165,7 +166,7 @@ export class Studio {
       present: () => this.#currentText(),
       unwritten: () => this.#unwritten,
       apply: ({ change, text }: StudyResult, studied: string) => void this.#applyResult(change, text, studied),
-      preview: (change: VariableSetting[] | undefined, studied: string) => this.#preview(change, studied),
+      preview: (design: StudyDesign | undefined, studied: string) => this.#previewDesign(design, studied),
       targets: this.#targets,
       goals: {
         quantities: () => this.state.report.quantities.map(({ name, units: [unit] }) => ({ name, unit })),
@@ -660,7 +661,7 @@ export class Studio {
       const reached = part === 1 ? wanted : between(this.#accepted, wanted, part)
       this.#accepted = reached
       state.solved(this.#read(answer.json.design, answer, reached), reached, {
-        refusal: why?.message,
+        refusal: why ? stopReason(why.message, part < 1) : '',
         isShort: part < 1,
         last: !this.#wanted,
       })
@@ -921,21 +922,22 @@ export class Studio {
   }
 
   /** Draws a design of a study under way next to the present one; of several at once the last. */
-  #preview(change: VariableSetting[] | undefined, studied: string): void {
-    if (change && (studied !== this.#text || this.#unwritten)) return
+  #previewDesign(design: StudyDesign | undefined, studied: string): void {
+    if (design && (studied !== this.#text || this.#unwritten)) return
     const isIdle = this.#previewed === undefined
-    this.#previewed = { change }
+    this.#previewed = { design }
     if (isIdle) void this.#drawPreviews()
   }
 
   async #drawPreviews(): Promise<void> {
     while (this.#previewed) {
-      const { change } = this.#previewed
+      const { design } = this.#previewed
       const { state } = this
       // A design of a search may not move at all: there is nothing to draw then.
-      const found = change && (await this.#solveAlone(added(state.settings, change)).catch(() => undefined))
-      if (this.state === state) this.#showPreview(found)
-      if (this.#previewed.change === change) this.#previewed = undefined
+      const settings = design && added(state.settings, design.change)
+      const found = settings && (await this.#solveAlone(settings).catch(() => undefined))
+      if (this.state === state) this.#showPreview(found && { ...found, name: design.name })
+      if (this.#previewed.design === design) this.#previewed = undefined
     }
   }
 
@@ -949,11 +951,12 @@ export class Studio {
   #showPreview(design: Design | undefined): void {
     const { state } = this
     const { comparisons, choice } = state
-    const at = comparisons.findIndex(({ name }) => name === PREVIEW)
+    const at = this.#preview ? comparisons.indexOf(this.#preview) : -1
     if (at >= 0) comparisons.splice(at, 1)
+    this.#preview = design
     if (design) {
       if (at < 0) this.#compared = choice.compared
-      comparisons.push({ ...design, name: PREVIEW })
+      comparisons.push(design)
       state.choose({ compared: state.designs.length - 1 })
     } else if (at >= 0) {
       if (this.history.compared.length > 0) void this.#compare()

@@ -19,7 +19,7 @@ import { type Aim, type Chosen, goalToml, type Judged } from '../../src/studio/g
 import { targetButton } from '../../src/studio/draw_target'
 import { Sketch } from '../../src/studio/sketch'
 import type { Point } from '../../src/studio/stroke'
-import { optimizePane, tolerancePane } from '../../src/studio/studies'
+import { optimizePane, type StudyDesign, tolerancePane } from '../../src/studio/studies'
 import { targetToml } from '../../src/studio/target'
 import { EMPTY } from '../mechanisms'
 
@@ -30,7 +30,7 @@ declare global {
     compared: (string | undefined)[]
     /** The studies that were begun; the tests end them. */
     studies: Study[]
-    previews: (StudyResult['change'] | undefined)[]
+    previews: (StudyDesign | undefined)[]
     taken: { change: StudyResult['change']; studied: string }[]
     /** The text of the present design. */
     model: string
@@ -131,7 +131,7 @@ const host = {
   },
   unwritten: () => window.unwritten,
   apply: ({ change }: StudyResult, studied: string) => window.taken.push({ change, studied }),
-  preview: (change: StudyResult['change'] | undefined) => window.previews.push(change),
+  preview: (design: StudyDesign | undefined) => window.previews.push(design),
   targets: new Set<string>(),
   goals: {
     quantities: () => [
