@@ -83,6 +83,26 @@ describe('a right click on a value', () => {
   })
 })
 
+describe('the card of a value', () => {
+  test('has a button for its goal while it is pointed at or has the focus', async () => {
+    await open('macpherson')
+    const goal = page.getByTestId('card-goal')
+    expect(await goal.count()).toBe(0)
+    await page.getByTestId('card-camber').hover()
+    await goal.click()
+    await expect.poll(() => page.getByTestId('goal-of').inputValue()).toBe('of camber')
+    await page.getByTestId('card-half_track').focus()
+    await page.keyboard.press('Tab')
+    expect(await page.evaluate(() => document.activeElement!.getAttribute('aria-label'))).toBe('Goal of half_track')
+    await page.keyboard.press('Enter')
+    await expect.poll(() => page.getByTestId('goal-of').inputValue()).toBe('of half_track')
+    await page.getByTestId('title').hover()
+    await page.getByTestId('title').click()
+    await page.getByTestId('scrub').focus()
+    expect(await goal.count()).toBe(0)
+  })
+})
+
 describe('a variable', () => {
   test('gets bounds and a tolerance in its row, and keeps its change', async () => {
     await open('four_bar')

@@ -49,7 +49,7 @@ describe('a text that is typed', () => {
   test('without variables has a page, and its sensitivities again with them', async () => {
     const page = await open(models.four_bar)
     const heading = () => page.getByTestId('plot-1').locator('h3').innerText()
-    expect(await heading()).toMatch(/^d midpoint_x \[/)
+    expect(await heading()).toMatch(/^Sensitivities of midpoint_x \[/)
     await page.getByTestId('open-model').click()
     await paste(page, replaced(FOUR_BAR, /# The eight variables[^[]*\[design\][^[]*(?=\[points\])/, ''))
     await expect.poll(() => text(page, 'plot-1')).toContain('The model has no design variables')
@@ -58,7 +58,7 @@ describe('a text that is typed', () => {
     expect(await text(page, 'studio-status')).toBe('')
     expect((await curve(page, 'plot-0')).colours).toBeGreaterThan(10)
     await paste(page, FOUR_BAR)
-    await expect.poll(heading).toMatch(/^d midpoint_x \[/)
+    await expect.poll(heading).toMatch(/^Sensitivities of midpoint_x \[/)
     await settled(page)
     expect((await curve(page, 'plot-1')).colours).toBeGreaterThan(10)
   })

@@ -21,6 +21,7 @@ import { type ChoiceMemory, State } from '../state'
 import type { Figure } from '../page/figure'
 import { targetButton } from './draw_target'
 import { designToml, isSameDesign } from './designs'
+import { goalsOfCards } from './card_goal'
 import { Drawer } from './drawer'
 import { type Aim, boundsToml, type Chosen, goalToml, type Judged, toleranceToml } from './goal'
 import type { Proposal } from './goal_form'
@@ -200,14 +201,11 @@ export class Studio {
         open: studyPane(() => tolerancePane(host), this, mark('Tolerance')),
       },
     ])
-    // A card is a value, for which there may be a goal.
-    root.addEventListener('contextmenu', (event) => {
-      // Its figures have identifiers of their own.
-      const name = (event.target as Element).closest<HTMLElement>('.card[data-testid^=card-]')?.dataset.testid
-      if (!name || !this.#opened) return
-      event.preventDefault()
-      this.propose({ of: name.slice('card-'.length), over: this.#proposal().over })
-    })
+    goalsOfCards(
+      root,
+      () => this.#opened !== undefined,
+      (of) => this.propose({ of, over: this.#proposal().over }),
+    )
     const server = connect(document)
     const own = {
       text: () => this.#currentText(),
