@@ -149,26 +149,81 @@ export function valueAt(curve: Curve, step: number): number {
 export type Course = readonly Curve[]
 
 /**
- * Value of a course between step `k` and the next one, a time `h` later: the polynomial with the values, rates and
- * accelerations of both steps, as metrics are evaluated between output times. `s` goes from 0 to 1.
+ * Coefficients, from the constant on, of a course between step `k` and the next one, a time `h` later: the polynomial
+ * with the values, rates and accelerations of both steps, as metrics are evaluated between output times. Its variable
+ * goes from 0 to 1.
  */
-export function hermite([y, v, a]: Course, k: number, h: number, s: number): number {
-  if (!v?.length || Number.isNaN(v[k] + v[k + 1])) return y[k] + (y[k + 1] - y[k]) * s
+function polynomial([y, v, a]: Course, k: number, h: number): number[] {
+  if (!v?.length || Number.isNaN(v[k] + v[k + 1])) return [y[k], y[k + 1] - y[k]]
   const [first, rate] = [y[k], h * v[k]]
   if (!a?.length || Number.isNaN(a[k] + a[k + 1])) {
     const [rise, turn] = [y[k + 1] - first - rate, h * v[k + 1] - rate]
-    return first + s * (rate + s * (3 * rise - turn + s * (turn - 2 * rise)))
+    return [first, rate, 3 * rise - turn, turn - 2 * rise]
   }
   const bend = (h * h * a[k]) / 2
   const rise = y[k + 1] - first - rate - bend
   const turn = h * v[k + 1] - rate - 2 * bend
   const left = (h * h * a[k + 1]) / 2 - bend
-  const [cubic, quartic, quintic] = [
-    10 * rise - 4 * turn + left,
-    7 * turn - 15 * rise - 2 * left,
-    6 * rise - 3 * turn + left,
-  ]
-  return first + s * (rate + s * (bend + s * (cubic + s * (quartic + s * quintic))))
+  return [first, rate, bend, 10 * rise - 4 * turn + left, 7 * turn - 15 * rise - 2 * left, 6 * rise - 3 * turn + left]
+}
+
+function horner(coefficients: readonly number[], s: number): number {
+  return coefficients.reduceRight((sum, coefficient) => coefficient + s * sum, 0)
+}
+
+/** Value of a course between step `k` and the next one, a time `h` later; `s` goes from 0 to 1. */
+export function hermite(course: Course, k: number, h: number, s: number): number {
+  return horner(polynomial(course, k, h), s)
+}
+
+/** Intervals of a step in which the sign of a rate is looked for. */
+const PARTS = 4
+/** Difference of a rise from the one by the mean rate, relative to the larger rate, beyond which there is a kink. */
+const KINK = 0.4
+
+/** Places between 0 and 1 where a polynomial turns. */
+function turns(coefficients: readonly number[]): number[] {
+  const rate = coefficients.slice(1).map((coefficient, k) => (k + 1) * coefficient)
+  const found: number[] = []
+  for (let part = 0; part < PARTS; part++) {
+    let [low, high] = [part / PARTS, (part + 1) / PARTS]
+    const sign = horner(rate, low)
+    if (!(sign * horner(rate, high) < 0)) continue
+    for (let n = 0; n < BISECTIONS; n++) {
+      const middle = (low + high) / 2
+      if (horner(rate, middle) * sign > 0) low = middle
+      else high = middle
+    }
+    found.push(low)
+  }
+  return found
+}
+
+/**
+ * Minimum and maximum of a course, also between its steps; undefined without a value. Steps in which the rates do not
+ * belong to the values, as beside a kink, have those of their ends.
+ */
+export function courseRange(course: Course, times: Curve): [number, number] | undefined {
+  const [y, v] = course
+  let [low, high] = [Infinity, -Infinity]
+  const take = (value: number) => {
+    if (!Number.isFinite(value)) return
+    if (value < low) low = value
+    if (value > high) high = value
+  }
+  for (let k = 0; k < y.length; k++) {
+    take(y[k])
+    if (!v?.length || k + 1 >= y.length) continue
+    const h = times[k + 1] - times[k]
+    const [rise, begin, end] = [y[k + 1] - y[k], h * v[k], h * v[k + 1]]
+    const largest = Math.max(Math.abs(begin), Math.abs(end))
+    // A cubic with these rates goes one way only.
+    const isMonotone = begin * rise >= 0 && end * rise >= 0 && largest <= 3 * Math.abs(rise)
+    if (isMonotone || !(Math.abs(rise - (begin + end) / 2) <= KINK * largest)) continue
+    const coefficients = polynomial(course, k, h)
+    for (const turn of turns(coefficients)) take(horner(coefficients, turn))
+  }
+  return low <= high ? [low, high] : undefined
 }
 
 /** Bisections that leave less than single precision of an interval. */

@@ -1,7 +1,7 @@
-import { valueAt, stepAt, type Curve } from './curve'
+import { valueAt, stepAt, type Course, type Curve } from './curve'
 import { effects } from './effect'
 import type { VariableSetting } from './engine/protocol'
-import { curveOf, type Design, isGiven, type Order, type Report } from './report'
+import { curveOf, type Design, isGiven, type Order, ORDERS, type Report } from './report'
 import type { Part } from './scene/drawable'
 import { abscissaNamed, type Sheet, sheetOf } from './sheet'
 
@@ -307,6 +307,11 @@ export class State {
       if (by !== 0 && slope) for (let k = 0; k < curve.length; k++) curve[k] += by * (slope[k] ?? NaN)
     }
     return curve
+  }
+
+  /** Values, rates and accelerations of a quantity of the present design. */
+  course(quantity: number): Course {
+    return ORDERS.map((_, order) => this.curve(quantity, order as Order))
   }
 
   /** A value of the present design, where it is known. */

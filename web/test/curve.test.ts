@@ -1,6 +1,7 @@
 import { expect, test } from 'vitest'
 import {
   atFixedAbscissa,
+  courseRange,
   decades,
   nearestStep,
   peak,
@@ -95,4 +96,25 @@ test('the nearest step prefers the branch that is shown', () => {
   const there = curve(0, 1, 2, 1, 0)
   expect(nearestStep(there, 1, 0)).toBe(1)
   expect(nearestStep(there, 1, 4)).toBe(3)
+})
+
+test('the range of a course has the extrema between its steps', () => {
+  const times = curve(...Array.from({ length: 9 }, (_, k) => (k * 6) / 8))
+  const [value, rate] = [(t: number) => Math.sin(t + 0.2), (t: number) => Math.cos(t + 0.2)]
+  const smooth = [times.map(value), times.map(rate), times.map((t) => -value(t))]
+  const near = (range: [number, number] | undefined, digits: number) => {
+    expect(range![0]).toBeCloseTo(-1, digits)
+    expect(range![1]).toBeCloseTo(1, digits)
+  }
+  near(courseRange(smooth, times), 4)
+  near(courseRange(smooth.slice(0, 2), times), 2)
+  expect(courseRange(smooth.slice(0, 1), times)).toEqual([Math.min(...smooth[0]), Math.max(...smooth[0])])
+  expect(courseRange([curve()], times)).toBe(undefined)
+  expect(courseRange([curve(NaN, 2, 1), curve(NaN, 0, -1)], times)).toEqual([1, 2])
+})
+
+test('a kink at a step does not add to the range of a course', () => {
+  const times = curve(0, 1, 2, 3)
+  for (const rates of [curve(1, 1, 0, 0), curve(1, 0, 0, 0)])
+    expect(courseRange([curve(0, 1, 1, 1), rates, curve(0, 0, 0, 0)], times)).toEqual([0, 1])
 })

@@ -54,6 +54,14 @@ describe('after a change', () => {
     expect(after.value).not.toBe(before.value)
   })
 
+  test('ranges of cards and of Compare are those of the curve, as the metrics beside them', async () => {
+    await open('front_axle')
+    const largest = await page.getByTestId('card-largest_camber').getByTestId('card-value').innerText()
+    await page.getByTestId('tab-compare').click()
+    const row = page.getByTestId('comparison').locator('tr', { hasText: /^left\.camber/ })
+    expect(await row.locator('td').first().innerText()).toMatch(new RegExp(` … ${largest.replace('.', '\\.')}$`))
+  })
+
   test('cards show what it did to the range over the motion, where the value at ride height stays', async () => {
     await open('macpherson')
     const toe = page.getByTestId('card-toe')

@@ -1,6 +1,5 @@
-import { slope, slopeAlone, stepAt } from '../curve'
+import { courseRange, slope, slopeAlone, stepAt } from '../curve'
 import { el, setText } from '../dom'
-import { extent } from '../export/axis'
 import { number, per, pretty, signed } from '../format'
 import { aboutQuantity } from '../glossary'
 import type { Value } from '../payload'
@@ -121,13 +120,14 @@ function whatOf({ wheels }: Report, { what }: Value): string {
   return wheels.length > 0 ? 'at ride height' : 'at design position'
 }
 
-/** Minimum and maximum over the motion with their changes, and the slope over wheel travel. */
+/** Minimum and maximum of the curve over the motion with their changes, and the slope over wheel travel. */
 function motionText(state: State, { quantity, time, unit }: Value): string {
   const index = quantity!
-  const range = extent([state.curve(index, 0)])
+  const { times, quantities } = state.report
+  const range = courseRange(state.course(index), times)
   if (!range) return ''
-  const reference = state.former?.quantities[index]?.[0] ?? state.report.quantities[index].curves[0]
-  const before = state.isCompared ? extent([reference]) : undefined
+  const reference = state.former?.quantities[index] ?? quantities[index].curves
+  const before = state.isCompared ? courseRange(reference, times) : undefined
   const size = Math.max(...range.map(Math.abs))
   const end = (value: number, former: number | undefined) => {
     const by = former === undefined ? 0 : value - former

@@ -1,9 +1,8 @@
-import type { Curve } from '../curve'
+import { type Course, courseRange } from '../curve'
 import { el } from '../dom'
-import { extent } from '../export/axis'
 import { number, pretty, signed, titled } from '../format'
 import { noise } from '../rounding'
-import { curveOf, type Design } from '../report'
+import type { Design } from '../report'
 import type { State } from '../state'
 import { isStatic, valueText } from './cards'
 import { whileSeen } from './tabs'
@@ -15,7 +14,7 @@ const PLACE = 8
 interface Column {
   name: string
   value: (index: number) => number | null
-  curve: (quantity: number) => Curve
+  course: (quantity: number) => Course
 }
 
 /**
@@ -47,8 +46,8 @@ export function comparison(state: State): HTMLElement {
       ...values.map((item, index) => {
         const { name, what, unit, quantity } = item
         const isRange = isStatic(item)
-        const found = columns.map(({ value, curve }) =>
-          isRange ? (extent([curve(quantity!)]) ?? [null, null]) : [value(index)],
+        const found = columns.map(({ value, course }) =>
+          isRange ? (courseRange(course(quantity!), state.report.times) ?? [null, null]) : [value(index)],
         )
         const join = (words: string[]) => [...new Set(words)].join(' … ')
         const cells = found.map((numbers) => join(numbers.map(valueText)))
@@ -108,17 +107,17 @@ function columnsOf(state: State): Column[] {
   const original: Column = {
     name: 'original',
     value: (index) => report.values[index].value,
-    curve: (quantity) => report.quantities[quantity].curves[0],
+    course: (quantity) => report.quantities[quantity].curves,
   }
   const of = (design: Design): Column => ({
     name: design.name,
     value: (index) => design.values[index] ?? null,
-    curve: (quantity) => curveOf(design, quantity, 0),
+    course: (quantity) => design.quantities[quantity] ?? [new Float32Array()],
   })
   const present: Column = {
     name: 'current',
     value: (index) => state.value(index),
-    curve: (quantity) => state.curve(quantity, 0),
+    course: (quantity) => state.course(quantity),
   }
   const reference = choice.compared !== undefined && former ? of(former) : original
   const last = reference === original || !state.changed ? [] : [original]
