@@ -596,10 +596,14 @@ class Model:
 
     # The command's other jobs
 
-    def export(self, path: str | os.PathLike, format: str | None = None) -> dict[str, Any]:
+    def export(self, path: str | os.PathLike, format: str | None = None, *, design: bool = False) -> dict[str, Any]:
         """Writes the model as a file of another program (`hardpoint.export_formats()`), by default in the format of the file's name.
-        Returns the facts of `hardpoint export --json`; `unsaid` lists what the format cannot express."""
-        return tools.export(self, path, format)
+        Returns the facts of `hardpoint export --json`; `unsaid` lists what the format cannot express.
+
+        `design` makes the design variables arguments of the motion in C, as `--design` does; in an FMU they are parameters anyway, unless
+        that is impossible, which is an error with `design`. The variables of `model.with_coordinates()` are arguments in both formats.
+        """
+        return tools.export(self, path, format, design)
 
     def clearance(self, *, case: str | None = None, proof: bool = True) -> Study:
         """Distances between the model's shapes over the motion, and the proof that nothing is nearer between output times."""

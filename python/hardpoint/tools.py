@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 
 CODES: dict[int, type[HardpointError]] = {2: UsageError, 3: ModelError, 4: TopologyError, 5: MotionStopped, 6: FileError}
 """Classes of errors by the command's exit codes."""
+WITH_DESIGN = ("c", "fmu")
+"""Formats that contain the motion as a function of the design, by name and extension."""
 FELL_SHORT = 1
 """Exit code of a command that has a result, but not the requested one."""
 
@@ -119,9 +121,15 @@ def _study(model: Model, found: dict[str, Any]) -> Study:
     return Study(model, found, [], None, None)
 
 
-def export(model: Model, path: str | os.PathLike, format: str | None) -> dict[str, Any]:
+def export(model: Model, path: str | os.PathLike, format: str | None, design: bool) -> dict[str, Any]:
+    to = files.target(path)
+    options = [] if format is None else ["--format", format]
+    options += ["--design"] if design else []
+    # The file does not have the variables of `with_coordinates`. Other formats have no variables.
+    if (format or to.suffix[1:].lower()) in WITH_DESIGN:
+        options += [option for option, added in zip(("--coordinates", "--tilts"), model._added) if added]
     with saved(model) as file:
-        return facts("export", file, "-o", os.path.abspath(files.target(path)), *([] if format is None else ["--format", format]))
+        return facts("export", file, "-o", os.path.abspath(to), *options)
 
 
 def clearance(model: Model, case: str | None, proof: bool) -> Study:

@@ -393,3 +393,36 @@ def test_the_example_of_the_page_runs(command, monkeypatch, tmp_path):
     names = {}
     exec(compile(example, "docs/export-fmi.md", "exec"), names)
     assert np.isfinite(names["result"]["measures.camber.value"]).all()
+
+
+def test_every_coordinate_is_a_parameter_on_request(tmp_path):
+    model = hardpoint.read(MODELS / "double_wishbone.toml")
+    whole = model.with_coordinates(tilts=True)
+    whole.export(tmp_path / "corner.fmu")
+    description = fmpy.read_model_description(str(tmp_path / "corner.fmu"))
+    parameters = {v.name: v for v in description.modelVariables if v.causality == "parameter"}
+    added = [name for name in whole.variables if name not in model.variables]
+    assert added and {f"design.'{name}'" for name in added} <= set(parameters)
+    # Tuned to a millimetre and a thousandth of a radian, 20 mm from the design configuration.
+    chosen = {name: 1e-3 / si(whole, whole.variables[name].unit) for name in (added[0], added[-1])}
+    start = {"drivers.spring_drive.position": 0.02, **{f"design.'{name}'": 1e-3 for name in chosen}}
+    result = fmpy.simulate_fmu(str(tmp_path / "corner.fmu"), stop_time=0.1, start_values=start, output=["measures.toe.value"])
+    at = next(driver["nominal"] for driver in model.drivers if driver["name"] == "spring_drive") + 20
+    expected, nominal = (of["toe"] * si_of(model, "toe", 0) for of in (whole.at(spring_drive=at, design=chosen), model.at(spring_drive=at)))
+    assert result["measures.toe.value"] == pytest.approx(expected, abs=1e-9) and abs(expected - nominal) > 1e-6
+
+
+def test_variables_of_the_design_are_arguments_in_c(tmp_path):
+    model = hardpoint.read(MODELS / "double_wishbone.toml")
+    plain, design, whole = (tmp_path / f"{name}.c" for name in ("plain", "design", "whole"))
+    facts = model.export(plain)
+    assert "design variables" in [one["kind"] for one in facts["unsaid"]]
+    model.export(design, design=True)
+    model.with_coordinates().export(whole)
+    headers = [path.with_suffix(".h").read_text() for path in (plain, design, whole)]
+    assert [f"{path.stem}_gradient".lower() in text for path, text in zip((plain, design, whole), headers)] == [False, True, True]
+    assert all(f"WHOLE_DESIGN_{name.replace('.', '_').upper()} " in headers[2] for name in model.with_coordinates().variables)
+    # Formats without a design ignore the added variables, and refuse the option.
+    model.with_coordinates().export(tmp_path / "corner.urdf")
+    with pytest.raises(hardpoint.UsageError, match="--design"):
+        model.export(tmp_path / "corner.urdf", design=True)

@@ -737,7 +737,7 @@ Examples:
   hardpoint export models/double_wishbone.toml -o hardpoints.csv
   hardpoint export models/double_wishbone.toml -o skeleton.dxf
   hardpoint export models/double_wishbone.toml -o corner.c --design
-  hardpoint export models/double_wishbone.toml -o corner.fmu
+  hardpoint export models/double_wishbone.toml -o corner.fmu --coordinates
   hardpoint export models/double_wishbone.toml -o front.sub --json | jq '.unsaid[]'
   hardpoint export --list";
 
@@ -757,8 +757,14 @@ pub struct Export {
     /// Make the design variables arguments, with the derivatives by them (C, FMU)
     #[arg(long)]
     pub design: bool,
+    /// As `--design`, with every coordinate of a hardpoint as a variable (`A.x`)
+    #[arg(long)]
+    pub coordinates: bool,
+    /// As `--design`, with every tilt of a joint axis as a variable (`J.tilt_x`)
+    #[arg(long)]
+    pub tilts: bool,
     /// List the formats
-    #[arg(long, conflicts_with_all = ["model", "output", "format", "design"])]
+    #[arg(long, conflicts_with_all = ["model", "output", "format", "design", "coordinates", "tilts"])]
     pub list: bool,
     /// Print one JSON document instead of text
     #[arg(long)]

@@ -7,6 +7,7 @@ use hardpoint_export::{ExportError, ExportOptions, FORMATS, Format};
 use hardpoint_report::GENERATOR;
 use hardpoint_study::RequestError;
 use hardpoint_study::request::Fault;
+use hardpoint_study::whatif::{add_coordinates, add_tilts};
 use serde_json::json;
 
 use crate::args::Export;
@@ -50,19 +51,31 @@ fn export_to(session: &Session, options: &Export, model: &Path, to: &Path) -> Re
             Format::of(&name).ok_or_else(|| session.misunderstood(&why()))?
         }
     };
-    if options.design && !format.has_design() {
+    let with_design = [
+        ("--design", options.design),
+        ("--coordinates", options.coordinates),
+        ("--tilts", options.tilts),
+    ];
+    let with_design = with_design.iter().find(|(_, given)| *given).map(|(option, _)| *option);
+    if let Some(option) = with_design.filter(|_| !format.has_design()) {
         let with: Vec<&str> = FORMATS.iter().filter(|f| f.has_design()).map(|f| f.name).collect();
         let why = format!(
-            "`--design`: the format {} does not contain the motion; leave it out, or export as {}",
+            "`{option}`: the format {} does not contain the motion; leave it out, or export as {}",
             format.name,
             with.join(" or ")
         );
         return Err(session.misunderstood(&why));
     }
     session.may_save(model, Some(to))?;
-    let file = session.read(model)?;
+    let mut file = session.read(model)?;
+    if options.coordinates {
+        add_coordinates(&mut file.model);
+    }
+    if options.tilts {
+        add_tilts(&mut file.model);
+    }
     let stem = to.file_stem().unwrap_or_default().to_string_lossy();
-    let asked = ExportOptions { design: options.design };
+    let asked = ExportOptions { design: with_design.is_some() };
     let exported = format.export_with(&file, &stem, asked).map_err(|error| match error {
         ExportError::CannotBeDriven(fault) => session.cannot_be_driven(&file, &fault),
         ExportError::NotRecorded { why } => session.refused(&file, &not_recorded(format, &why)),
