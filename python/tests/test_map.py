@@ -10,6 +10,7 @@ import numpy
 import pytest
 
 import hardpoint
+from conftest import MODELS
 
 interpolate = pytest.importorskip("scipy.interpolate")
 
@@ -147,3 +148,55 @@ def test_a_range_that_is_not_reached_names_the_place(command, model, tmp_path):
     done = command("map", model, "--over", "spring_drive=-160..24", "--of", "toe", "--error", "1deg", "-o", path)
     assert done.returncode == 5 and not path.exists()
     assert "HP0606" in done.stderr and "spring_drive = -160 mm is not reached" in done.stderr
+
+
+def hermite(knots, numbers, at):
+    """The interpolation of docs/maps.md: cubic along the first driver, of values and of derivatives by the next, then along the next.
+    `numbers` has an axis of value and derivative for each driver, then the knots of each."""
+    cells = [numpy.clip(numpy.searchsorted(x, a, side="right") - 1, 0, len(x) - 2) for x, a in zip(knots, at)]
+    total = 0.0
+    for corner in numpy.ndindex(*(2,) * len(knots)):
+        place = tuple(cell + end for cell, end in zip(cells, corner))
+        for order in numpy.ndindex(*(2,) * len(knots)):
+            weight = 1.0
+            for x, a, cell, end, k in zip(knots, at, cells, corner, order):
+                width = x[cell + 1] - x[cell]
+                # Distance from the corner in widths of the cell.
+                u = abs(a - x[cell + end]) / width
+                weight = weight * ((1 + 2 * u) * (1 - u) ** 2 if k == 0 else (1 - 2 * end) * width * u * (1 - u) ** 2)
+            total = total + weight * numbers[order][place]
+    return total
+
+
+def test_the_proved_error_holds_at_a_million_positions(tmp_path):
+    """The stroke of a slider crank has a closed form, so that every position of the written table can be compared."""
+    model = hardpoint.read(MODELS / "slider_crank.toml")
+    found = model.table({"crank_drive": (-4, 4)}, of="stroke", error="1e-5m", path=tmp_path / "stroke.csv")
+    with open(tmp_path / "stroke.csv", newline="") as file:
+        head, *rows = csv.reader(file)
+    assert head == ["crank_drive [rad]", "stroke [m]", "stroke by crank_drive [m/rad]"]
+    x, value, slope = numpy.array(rows, dtype=float).T
+    at = numpy.random.default_rng(40).uniform(-4, 4, 1_000_000)
+    (cx, cy, _), (px, py, _) = model.hardpoints["P2"], model.hardpoints["P3"]
+    turned = numpy.arctan2(cy, cx) + at
+    crank, rod = numpy.hypot(cx, cy), numpy.hypot(px - cx, py - cy)
+    exact = crank * numpy.cos(turned) + numpy.sqrt(rod**2 - (py - crank * numpy.sin(turned)) ** 2) - px
+    errors = numpy.abs(hermite([x], {(0,): value, (1,): slope}, [at]) - exact)
+    assert 0.01 * found.proved_error["stroke"] < errors.max() <= found.proved_error["stroke"] <= 1e-5
+
+
+def test_the_proved_error_over_two_drivers_holds_at_random_positions(model, tmp_path):
+    of = hardpoint.read(model)
+    ranges = {"spring_drive": (-16, 24), "rack_drive": (-12, 12)}
+    of.table(ranges, of="toe", error="0.01deg", path=tmp_path / "toe.json")
+    table = json.loads((tmp_path / "toe.json").read_text())
+    knots = [numpy.array(axis["knots"]) for axis in table["drivers"]]
+    names = [axis["name"] for axis in table["drivers"]]
+    (toe,) = table["outputs"]
+    shape = [len(x) for x in knots]
+    numbers = {tuple(int(name in one["by"]) for name in names): numpy.reshape(one["values"], shape) for one in toe["numbers"]}
+    random = numpy.random.default_rng(41)
+    at = [random.uniform(*ranges[name], 10_000) for name in names]
+    exact = of.at(dict(zip(names, at)), sensitivities=False)["toe"]
+    errors = numpy.abs(hermite(knots, numbers, at) - exact)
+    assert 1e-9 < errors.max() <= toe["proved_error"]
