@@ -10,6 +10,9 @@ from .arrays import free, frozen
 from .errors import Diagnostic, UsageError, diagnostics, index_of
 
 if TYPE_CHECKING:
+    import pandas
+    import xarray
+
     from .model import Model
 
 
@@ -31,9 +34,11 @@ class Designs:
         self.values: np.ndarray = found["values"]
         """`[design, output, time]`."""
         self._sensitivities: np.ndarray = found["sensitivities"]
-        self.metric_names: tuple[str, ...] = tuple(m["name"] for m in model._info["motions"][case]["metrics"])
         self.metrics: np.ndarray = found["metrics"]
-        """`[design, metric]`."""
+        """`[design, metric]`; no columns with `metrics=False`."""
+        names = tuple(m["name"] for m in model._info["motions"][case]["metrics"])
+        self._with_metrics = self.metrics.shape[1] == len(names)
+        self.metric_names: tuple[str, ...] = names if self._with_metrics else ()
         self._metric_sensitivities: np.ndarray = found["metric_sensitivities"]
         self.stops: dict[int, Diagnostic] = {number: diagnostics(why)[0] for number, why in found["stops"]}
         """Designs whose motion ends early, with the reason."""
@@ -62,9 +67,11 @@ class Designs:
 
     def metric(self, name: str) -> np.ndarray:
         """Values of a metric for all designs."""
+        if not self._with_metrics:
+            raise UsageError.saying("the designs were solved without metrics; leave `metrics=False` out")
         return self.metrics[:, index_of("metric", name, self.metric_names)]
 
-    def to_xarray(self):
+    def to_xarray(self) -> xarray.Dataset:
         """Data set of all results, with labels."""
         import xarray
 
@@ -76,7 +83,7 @@ class Designs:
         data["designs"] = (("design", "variable"), self.designs)
         return xarray.Dataset(data, {**names, "time": self.times})
 
-    def to_pandas(self):
+    def to_pandas(self) -> pandas.DataFrame:
         """Table of variables and metrics, with a row for each design. A metric with the name of a variable ends in `_`."""
         import pandas
 

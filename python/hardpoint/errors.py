@@ -6,7 +6,7 @@ import json
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .run import Run
@@ -66,7 +66,7 @@ class HardpointError(Exception):
         self.diagnostics = tuple(found)
 
     @classmethod
-    def of(cls, text: str):
+    def of(cls, text: str) -> HardpointError:
         """Error with diagnostics in JSON."""
         return cls(diagnostics(text))
 
@@ -75,10 +75,10 @@ class HardpointError(Exception):
         """Error with a message alone."""
         return cls((Diagnostic.of(_plain(message)),))
 
-    def __reduce__(self):
+    def __reduce__(self) -> Any:
         return type(self), (self.diagnostics,)
 
-    def __getattr__(self, name: str):
+    def __getattr__(self, name: str) -> Any:
         if name in ("code", "element", "file", "line", "column", "help", "rendered", "message"):
             return getattr(self.diagnostics[0], name)
         raise AttributeError(name)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,6 +12,8 @@ from .arguments import checked, count, instance, listed, ordered
 from .errors import CannotFollow, StudyError, UsageError, index_of, unknown
 from .model import Model
 
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 STEP = 1e-5
 """Step of differences relative to the size of the mechanism or to a radian: the cube root of round-off."""
@@ -131,33 +133,33 @@ class Function:
         kinds = {self.model.units["length"]: size, self.model.units["angle"]: radian}
         return np.array([STEP * kinds.get(self.model.variables[name].unit, 1.0) for name in self.variables])
 
-    def design(self, x) -> dict[str, float]:
+    def design(self, x: ArrayLike) -> dict[str, float]:
         """Design with these values."""
         return dict(zip(self.variables, ordered("design", x, self.variables).ravel()))
 
-    def __call__(self, x) -> np.ndarray:
+    def __call__(self, x: ArrayLike) -> np.ndarray:
         """Values of all outputs, `[size]`."""
         return self._solved(x, False)[0].copy()
 
-    def jacobian(self, x) -> np.ndarray:
+    def jacobian(self, x: ArrayLike) -> np.ndarray:
         """Derivatives of all outputs, `[size, variable]`."""
         return self._solved(x, True)[1].copy()
 
-    def value(self, x) -> Any:
+    def value(self, x: ArrayLike) -> Any:
         """Value of a scalar function; of several designs, one per column as SciPy passes them, an array of values."""
         if np.ndim(x) == 2:
             return self._one(self.many(np.transpose(x)).T)[0]
         return float(self._one(self(x))[0])
 
-    def gradient(self, x) -> np.ndarray:
+    def gradient(self, x: ArrayLike) -> np.ndarray:
         """Gradient of a scalar function."""
         return self._one(self.jacobian(x))[0]
 
-    def many(self, designs) -> np.ndarray:
+    def many(self, designs: ArrayLike) -> np.ndarray:
         """Values for many designs, one per row, solved on all cores: `[design, size]`."""
         return self._batch(designs, False)[0]
 
-    def many_jacobians(self, designs) -> np.ndarray:
+    def many_jacobians(self, designs: ArrayLike) -> np.ndarray:
         """Derivatives for many designs, one per row: `[design, size, variable]`."""
         found = self._batch(designs, True)[1]
         assert found is not None
@@ -176,7 +178,7 @@ class Function:
         """Values of one of its parts."""
         return np.asarray(numbers)[self.parts[index_of("part", name, [part.name for part in self.parts])].place]
 
-    def _solved(self, x, derivatives: bool) -> tuple[np.ndarray, np.ndarray | None]:
+    def _solved(self, x: Any, derivatives: bool) -> tuple[np.ndarray, np.ndarray | None]:
         x = np.ascontiguousarray(ordered("design", x, self.variables)).ravel()
         key = x.tobytes()
         if self._last and self._last[0] == key and (self._last[1] or not derivatives):
@@ -185,7 +187,7 @@ class Function:
         self._last = (key, derivatives, values[0], None if jacobians is None else jacobians[0])
         return self._last[2], self._last[3]
 
-    def _batch(self, designs, derivatives: bool, workers: int | None = None) -> tuple[np.ndarray, np.ndarray | None]:
+    def _batch(self, designs: Any, derivatives: bool, workers: int | None = None) -> tuple[np.ndarray, np.ndarray | None]:
         rows = ordered("designs", designs, self.variables)
         if rows.ndim != 2 or rows.shape[1] != len(self.variables) or not np.isfinite(rows).all():
             given = rows.shape[1:] if rows.ndim > 1 and len(rows) == 1 else rows.shape

@@ -19,9 +19,9 @@ from .arguments import by_name, checked, count, labels, listed, number, numbers,
 from .arrays import frozen
 from .designs import Designs
 from .errors import Diagnostic, HardpointWarning, MotionStopped, UsageError, index_of, unknown
-from .positions import Positions, Solver, names
+from .positions import Forces, Positions, Solver, names
 from .run import Run
-from .studies import DriverTable, Map, Study, SweepResult, outcome
+from .studies import DriverTable, Map, Study, SweepResult, outcome, timed
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -34,6 +34,8 @@ Progress = Union[Callable[[int, int], Any], bool, None]
 
 CHANGED = " (changed)"
 """Ends the name of a file whose text was changed by `with_`."""
+MOST_SOLVERS = 4
+"""Maximum number of solvers of positions that a model keeps, one for each choice of forces."""
 MOST_RANKED = 200
 """Maximum number of hardpoints whose coordinates are variables of a what-if."""
 
@@ -95,7 +97,8 @@ class Model:
         self._native = native
         self._case = case
         self._folder = folder
-        self._solvers: dict[tuple, Solver] = {}
+        # A loop over forces has a solver for each value.
+        self._solver: Callable[[Forces], Solver] = lru_cache(maxsize=MOST_SOLVERS)(lambda forces: Solver(self, forces))
         self._added = variables
         info = self._info = json.loads(native.info())
         self.name: str = info["name"]
@@ -136,11 +139,11 @@ class Model:
 
     def times(self, case: str | None = None) -> np.ndarray:
         """Output times of a case, s."""
-        return frozen(np.array(self._info["motions"][self._index(case)]["times"], dtype=float))
+        return frozen(np.array(self._info["motions"][self._index(case, "times")]["times"], dtype=float))
 
     def metrics(self, case: str | None = None) -> dict[str, str]:
         """Metrics of a case, with their units."""
-        return {m["name"]: m["unit"] for m in self._info["motions"][self._index(case)]["metrics"]}
+        return {m["name"]: m["unit"] for m in self._info["motions"][self._index(case, "metrics")]["metrics"]}
 
     def case(self, name: str) -> Model:
         """Returns the model in one of its cases."""
@@ -158,7 +161,7 @@ class Model:
     def _repr_html_(self) -> str:
         return display.model(self)
 
-    def __reduce__(self):
+    def __reduce__(self) -> Any:
         named = tuple(sorted(self._native.files.items()))
         return _restored, (self.text, self.file, named, self._added, self._case)
 
@@ -313,10 +316,8 @@ class Model:
         `model.at({"rack drive": 5})`.
         """
         given = {name: number(f"force `{name}`", value) for name, value in by_name("forces", forces).items()}
-        key = tuple(sorted(given.items()))
-        if key not in self._solvers:
-            self._solvers[key] = Solver(self, given)
-        return self._solvers[key].solve(names(drivers, values), design, sensitivities, partial, count("workers", workers), progress)
+        solver = self._solver(tuple(sorted(given.items())))
+        return solver.solve(names(drivers, values), design, sensitivities, partial, count("workers", workers), progress)
 
     # Motions
 
@@ -333,8 +334,9 @@ class Model:
         """Solves the motion of a design: position, velocity, acceleration, and their sensitivities by all design variables.
 
         `times` are other output times, s, or a table as `[time]` has it (`{"end": 2, "steps": 100}`). `laws` are other laws of drivers
-        and forces by name: a text (`"10 * sin(t)"`), a number, a table as in the file, or an array of values at the output times, which
-        a smooth curve passes through. Both hold for this run only; `run.model` has them.
+        and forces by name: a text (`"10 * sin(t)"`), a number, a table as in the file, or an array of values at the output times: a table
+        with `ends = "clamped"`, a smooth curve through the values that begins and ends at rest. Other ends need the table itself,
+        `{"type": "table", "points": [[0, 0], ...], "ends": "natural"}`. Both hold for this run only; `run.model` has them.
 
         Raises `MotionStopped` if the motion ends before its last output time; with `partial`, the solved part is returned, and
         `run.stop` has the reason.
@@ -353,7 +355,7 @@ class Model:
             raise error
         return run
 
-    def runs(self, design: Design = None, **options) -> dict[str, Run]:
+    def runs(self, design: Design = None, **options: Any) -> dict[str, Run]:
         """Runs every case."""
         if "case" in options:
             raise UsageError.saying("`model.runs()` runs every case; for a single one, `model.run(case=...)`")
@@ -381,15 +383,15 @@ class Model:
         has `outputs` of an `order` at the output times with the indices `at` (all), the `metrics`, and the `sensitivities` of both.
         Raises `MotionStopped` if a motion ends early; with `partial` its values are NaN, and `stops` has the reason.
         """
-        index = self._index(case)
+        index = self._index(case, "designs")
         rows = self._rows(designs, variables)
         names = listed("outputs", outputs)
         order = self._order(order, names)
         stored = _places(at, len(self._info["motions"][index]["times"]))
-        found = self._native.designs(
+        solved = self._native.designs(
             index, rows, [self._output(name) for name in names], order, stored.tolist(), sensitivities, metrics, count("workers", workers), listener(progress)
         )
-        found = Designs(self, index, rows, names, order, stored, found, sensitivities)
+        found = Designs(self, index, rows, names, order, stored, solved, sensitivities)
         if found.stops and not partial:
             number, why = next(iter(found.stops.items()))
             error = MotionStopped((why,))
@@ -404,7 +406,7 @@ class Model:
         or (`auto`) the cheaper of both. NaN for inadmissible variables."""
         names = listed("outputs", outputs)
         order = self._order(order, names)
-        found = self._native.gradients(self._index(case), self._values(design), [self._output(name) for name in names], word("method", method))
+        found = self._native.gradients(self._index(case, "gradients"), self._values(design), [self._output(name) for name in names], word("method", method))
         followed = np.array(found["followed"], dtype=bool)
         return frozen(np.where(followed, found["gradients"][..., order], np.nan))
 
@@ -419,12 +421,12 @@ class Model:
             if not self._declared(name).by_position:
                 raise UsageError.saying(f"`{name}` does not depend on the position only: it has no second derivatives")
         return self._native.second(
-            self._index(case), self._values(design), [self._output(n) for n in names], [self._variable(v) for v in chosen]
+            self._index(case, "second_derivatives"), self._values(design), [self._output(n) for n in names], [self._variable(v) for v in chosen]
         )
 
     def jerk(self, design: Design = None, *, case: str | None = None) -> dict[str, np.ndarray]:
         """Third time derivatives of all bodies: per body `[time, 6]`, linear and angular."""
-        found = self._native.jerk(self._index(case), self._values(design))
+        found = self._native.jerk(self._index(case, "jerk"), self._values(design))
         return {body: found["jerk"][:, k] for k, body in enumerate(self.bodies)}
 
     def maps(self, *, progress: Progress = None) -> list[Map]:
@@ -446,21 +448,23 @@ class Model:
             given = dict(zip(self.variables, self._values(design)))
         if any(isinstance(name, str) and whole._known(name) is None for name in given):
             whole = self.with_coordinates(tilts=True)
-        return outcome(whole, whole._native.what_if(self._index(case), whole._values(given)))
+        return outcome(whole, whole._native.what_if(self._index(case, "what_if"), whole._values(given)))
 
     @cached_property
     def _whole(self) -> Model:
         """Model with a variable for every coordinate, up to a maximum number."""
         return self.with_coordinates() if len(self.hardpoints) <= MOST_RANKED else self
 
+    @timed
     def verify(self, *, case: str | None = None, progress: Progress = None) -> Study:
         """Compares all sensitivities with re-solved designs."""
-        return outcome(self, self._native.verify(self._index(case), listener(progress)))
+        return outcome(self, self._native.verify(self._index(case, "verify"), listener(progress)))
 
     def validity(self, *, case: str | None = None) -> list[dict]:
         """Linear range of each sensitivity."""
-        return json.loads(self._native.validity(self._index(case)))
+        return json.loads(self._native.validity(self._index(case, "validity")))
 
+    @timed
     def optimize(
         self, *, starts: int | None = None, iterations: int | None = None, workers: int | None = None, progress: Progress = None
     ) -> Study:
@@ -470,6 +474,7 @@ class Model:
         )
         return outcome(self, text, design, exact)
 
+    @timed
     def trade_off(
         self,
         *,
@@ -498,6 +503,7 @@ class Model:
         )
         return outcome(self, text, design, exact)
 
+    @timed
     def tolerance(
         self,
         *,
@@ -514,6 +520,7 @@ class Model:
         )
         return outcome(self, found)
 
+    @timed
     def calibrate(
         self,
         measured: Any,
@@ -550,6 +557,7 @@ class Model:
             )
         return outcome(self, text, design, design)
 
+    @timed
     def sweep(
         self,
         *,
@@ -684,7 +692,7 @@ class Model:
             )
         return values.tolist()
 
-    def _rows(self, designs, variables: Sequence[str] | None) -> np.ndarray:
+    def _rows(self, designs: Any, variables: Sequence[str] | None) -> np.ndarray:
         designs = list(designs) if not hasattr(designs, "shape") and hasattr(designs, "__iter__") else designs
         if isinstance(designs, list) and any(isinstance(design, Mapping) or labels(design) is not None for design in designs):
             return np.array([self._values(design) for design in designs])
@@ -704,14 +712,15 @@ class Model:
 
     # Names
 
-    def _index(self, case: str | None) -> int:
+    def _index(self, case: str | None, call: str = "run") -> int:
+        """Index of a case; `call` is the method that needs one."""
         if case is not None:
             return self._named(case)
         if self._case is not None:
             return self._case
         if len(self.cases) > 1:
             names = ", ".join(f"`{name}`" for name in self.cases)
-            raise UsageError.saying(f"the model has the cases {names}; name one, `model.run(case={self.cases[0]!r})`")
+            raise UsageError.saying(f"the model has the cases {names}; select one, as in `model.case({self.cases[0]!r}).{call}(...)`")
         return 0
 
     def _named(self, case: str) -> int:
@@ -782,7 +791,7 @@ def parse(text: str, name: str = "model.toml", folder: str | os.PathLike | None 
     return _opened(_native.parse(text, name, folder=where), where)
 
 
-def build(folder: str | os.PathLike | None = None, **sections) -> Model:
+def build(folder: str | os.PathLike | None = None, **sections: Any) -> Model:
     """Builds a model in code; the names are those of the file (docs/file-format.md), as for `Model.new`."""
     return Model.from_dict(sections, folder=folder)
 

@@ -111,13 +111,17 @@ def animation(run: Run, seconds: float, frames: int, size: float) -> Any:
     pyplot = _matplotlib()
     from matplotlib.animation import FuncAnimation
 
+    model = run.model
+    picked = np.unique(np.linspace(0, len(run) - 1, frames).round().astype(int))
+
     class Player(FuncAnimation):
+        def __repr__(self) -> str:
+            return f"<hardpoint animation of {model.name!r}: {len(picked)} frames, {seconds:g} s; save it with .save(path)>"
+
         def _repr_html_(self) -> str:
             return self.to_jshtml()
 
-    model = run.model
     parts = json.loads(model._native.skeleton(run._index, list(run._native.design)))
-    picked = np.unique(np.linspace(0, len(run) - 1, frames).round().astype(int))
     bodies = [None, *(run.body(name) for name in model.bodies)]
 
     def moved(place: list[float]) -> np.ndarray:

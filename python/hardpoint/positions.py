@@ -3,18 +3,25 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import _native, arguments
-from .arrays import frozen
+from .arrays import free, frozen
 from .errors import CannotFollow, Diagnostic, MotionStopped, UsageError, diagnostics, index_of
 
 if TYPE_CHECKING:
+    import pandas
+    import xarray
+
     from .model import Model, Progress
 
+Forces = tuple[tuple[str, float], ...]
+"""Values of forces by name, in the order of the names."""
+TOO_FAR = "HP0408"
+"""Code of a driver that moves farther than the program follows it."""
 LAST = 2
 """Output time of the engine at which the mechanism is at rest in the position."""
 
@@ -26,18 +33,32 @@ class Positions:
     such as velocities, are not available. Positions that cannot be reached are NaN, if they were permitted with `partial`.
     """
 
-    def __init__(self, model: Model, solver: Solver, drivers: dict[str, np.ndarray], shape: tuple[int, ...], rows: np.ndarray, found: dict):
+    def __init__(
+        self,
+        model: Model,
+        forces: Forces,
+        drivers: dict[str, np.ndarray],
+        shape: tuple[int, ...],
+        rows: np.ndarray,
+        values: np.ndarray,
+        slopes: np.ndarray | None,
+        stops: dict[int, Diagnostic],
+    ):
         self.model = model
-        self._solver = solver
+        self._solver = model._solver(forces)
         self._shape = shape
         self._rows = rows
-        self._values: np.ndarray = found["values"][:, :, 0]
-        self._slopes: np.ndarray | None = found["sensitivities"][..., 0] if found["sensitivities"].size or not len(rows) else None
+        self._values = frozen(values)
+        self._slopes = None if slopes is None else frozen(slopes)
         self._bodies: dict[int, _native.Run] = {}
-        self.drivers: dict[str, np.ndarray] = drivers
+        self.drivers: dict[str, np.ndarray] = {name: frozen(array) for name, array in drivers.items()}
         """Values of all drivers."""
-        self.stops: dict[int, Diagnostic] = {number: solver.stop(rows[number], diagnostics(why)[0]) for number, why in found["stops"]}
+        self.stops: dict[int, Diagnostic] = stops
         """Positions that cannot be reached, by their number in order, with the reason."""
+
+    def __reduce__(self) -> Any:
+        forces = self._solver.forces
+        return Positions, (self.model, forces, self.drivers, self._shape, self._rows, self._values, self._slopes, self.stops)
 
     def __len__(self) -> int:
         return len(self._rows)
@@ -95,16 +116,63 @@ class Positions:
                 rows[k] = self._bodies[k].body(number)[LAST, place]
         return frozen(rows.reshape((*self._shape, rows.shape[1])))
 
-    def to_pandas(self):
+    def to_pandas(self) -> pandas.DataFrame:
         """Table with a row for each position: the drivers, then all measures and points, with their units."""
         import pandas
 
         columns = {f"{name} [{self._solver.units[name]}]": np.ravel(values) for name, values in self.drivers.items()}
+        for name, unit, values in self._outputs():
+            columns[free(name if unit == "1" else f"{name} [{unit}]", columns)] = values
+        return pandas.DataFrame(columns)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Values of every measure and point over the drivers, and with sensitivities their derivatives by the design variables and by the
+        drivers: `toe`, `d toe`.
+
+        A dimension over which a single driver changes has its name; others are `position`, or `position_0`, `position_1`, ... A name that
+        is taken ends in `_`, as in `run.to_xarray()`.
+        """
+        import xarray
+
+        units = self._solver.units
+        dims = self._dimensions()
+        coordinates: dict[str, Any] = {}
+        for name, values in self.drivers.items():
+            # A driver along a dimension has one value at each of its places.
+            along = (name,) if name in dims else dims if np.ptp(values) else ()
+            keep = tuple(slice(None) if dim in along else 0 for dim in dims)
+            coordinates[name] = (along, values[keep], {"units": units[name]})
+        if self._slopes is not None:
+            by = {name: variable.unit for name, variable in self.model.variables.items()}
+            for name in self.drivers:
+                by[free(name, by)] = units[name]
+            coordinates["variable"] = ("variable", list(by))
+            coordinates["variable_unit"] = ("variable", list(by.values()))
+        data: dict[str, Any] = {}
+        for name, unit, values in self._outputs():
+            data[free(name, coordinates, dims, data)] = (dims, values.reshape(self._shape), {"units": unit, "of": name})
+        if self._slopes is not None:
+            for name, unit, _ in self._outputs():
+                slopes = self._slopes[:, self.model._output(name)].T.reshape(-1, *self._shape)
+                attributes = {"units": f"{unit} per unit of the variable", "of": name}
+                data[free(f"d {name}", coordinates, dims, data)] = (("variable", *dims), slopes, attributes)
+        return xarray.Dataset(data, coordinates, {"model": self.model.name})
+
+    def _outputs(self) -> Iterator[tuple[str, str, np.ndarray]]:
+        """Name, unit and values of every output that has a value at rest."""
         for name, output in self.model.outputs.items():
             if output.at_rest:
-                unit = output.units[0]
-                columns[name if unit == "1" else f"{name} [{unit}]"] = self._values[:, self.model._output(name)]
-        return pandas.DataFrame(columns)
+                yield name, output.units[0], self._values[:, self.model._output(name)]
+
+    def _dimensions(self) -> tuple[str, ...]:
+        """Names of the dimensions of the results."""
+        found: list[str] = []
+        changing = {name: [k for k in range(len(self._shape)) if np.ptp(values, axis=k).any()] for name, values in self.drivers.items()}
+        for k in range(len(self._shape)):
+            own = [name for name, axes in changing.items() if k in axes]
+            is_axis = len(own) == 1 and changing[own[0]] == [k]
+            found.append(own[0] if is_axis else free("position" if len(self._shape) == 1 else f"position_{k}", self.drivers, found))
+        return tuple(found)
 
 
 def spread(values: np.ndarray) -> str:
@@ -116,9 +184,10 @@ def spread(values: np.ndarray) -> str:
 class Solver:
     """The model whose design variables are those of another model, and then its drivers."""
 
-    def __init__(self, model: Model, forces: Mapping[str, float]):
+    def __init__(self, model: Model, forces: Forces):
         self.model = model
-        self.native = model._native.positioned(list(forces.items()))
+        self.forces = forces
+        self.native = model._native.positioned(list(forces))
         self.nominal = {driver["name"]: float(driver["nominal"]) for driver in model.drivers}
         self.units = {driver["name"]: driver["unit"] for driver in model.drivers}
 
@@ -138,13 +207,16 @@ class Solver:
             index_of("driver", name, self.nominal)
         values = {name: number(name, given[name]) if name in given else np.array(start) for name, start in self.nominal.items()}
         shape = next(iter(arguments.same_shape("drivers", values).values()), np.empty(())).shape
-        drivers = {name: frozen(np.broadcast_to(value, shape).copy()) for name, value in values.items()}
+        drivers = {name: np.broadcast_to(value, shape).copy() for name, value in values.items()}
         own = self.model._values(design) or [np.nan] * len(self.model.variables)
         moved = [np.ravel(drivers[name]) - start for name, start in self.nominal.items()]
         rows = np.column_stack([np.tile(own, (int(np.prod(shape)), 1)), *moved])
         outputs = list(range(len(self.model.outputs)))
         found = self.native.designs(0, rows, outputs, 0, [LAST], sensitivities, False, workers, listener(progress))
-        solved = Positions(self.model, self, drivers, shape, rows, found)
+        d = found["sensitivities"]
+        slopes = d[..., 0] if d.size or not len(rows) else None
+        stops = {number: self.stop(rows[number], diagnostics(why)[0]) for number, why in found["stops"]}
+        solved = Positions(self.model, self.forces, drivers, shape, rows, found["values"][:, :, 0], slopes, stops)
         if solved.stops and not partial:
             raise MotionStopped((next(iter(solved.stops.values())),))
         return solved
@@ -159,9 +231,12 @@ class Solver:
             if row[first + k] != 0.0 or len(self.nominal) == 1:
                 asked.append(f"`{name}` = {start + row[first + k]:.6g} {unit}")
                 reached += [f"`{name}` = {start + last[k]:.6g} {unit}"] if k < len(last) else []
-        place = f": on the way from the design configuration it stops at {', '.join(reached)}" if reached else ""
+        is_too_far = why.code == TOO_FAR
+        end = "the limit of the program, not of the mechanism, is" if is_too_far else "on the way from the design configuration it stops at"
+        place = f": {end} {', '.join(reached)}" if reached else ""
         message = f"the mechanism cannot be moved to {', '.join(asked) or 'the design configuration'}{place}"
-        help = "ask for a position before that, or change the design; `partial=True` returns the positions that can be reached"
+        limit = "within 100,000 rad, or 100,000 sizes of the mechanism" if is_too_far else "before that, or change the design"
+        help = f"ask for a position {limit}; `partial=True` returns the positions that can be reached"
         # The motion there is ours; its times and steps mean nothing to the reader.
         notes = tuple(note for note in why.notes if " time is t = " not in note and " steps of the changed design " not in note)
         lines = [f"error[{why.code}]: {message}", *(f"  = note: {note}" for note in notes), f"  = help: {help}"]

@@ -17,6 +17,10 @@ from .arrays import free, frozen
 from .errors import CannotFollow, Diagnostic, UsageError, diagnostics, index_of
 
 if TYPE_CHECKING:
+    import pandas
+    import pyarrow
+    import xarray
+
     from .model import Model
 
 
@@ -312,33 +316,36 @@ class Run:
         """Writes the run with its model, atomically; `hardpoint.load_run(path)` reads it without solving anything."""
         stored.save(self, path)
 
+    def __reduce__(self) -> Any:
+        return stored.unpacked, (stored.packed(self),)
+
     # Tables
 
     def _columns(self) -> dict[str, np.ndarray]:
         columns = {"time [s]": self.times}
         for name, output in self.model.outputs.items():
             for order, (column, unit) in enumerate(zip(output.columns, output.units)):
-                columns[column if unit == "1" else f"{column} [{unit}]"] = self.values(name, order)
+                columns[free(column if unit == "1" else f"{column} [{unit}]", columns)] = self.values(name, order)
         return columns
 
-    def to_pandas(self):
+    def to_pandas(self) -> pandas.DataFrame:
         """Table over time with a column for each measure, point and rate."""
         import pandas
 
         return pandas.DataFrame(self._columns())
 
-    def to_arrow(self):
-        """Arrow table, with the unit of each column in its metadata."""
+    def to_arrow(self) -> pyarrow.Table:
+        """Arrow table, with the unit of each column in its metadata. A measure with the name `time` is `time_`."""
         import pyarrow
 
-        fields, arrays = [pyarrow.field("time", pyarrow.float64(), metadata={"unit": "s"})], [pyarrow.array(self.times)]
+        columns = {"time": (self.times, "s")}
         for name, output in self.model.outputs.items():
             for order, (column, unit) in enumerate(zip(output.columns, output.units)):
-                fields.append(pyarrow.field(column, pyarrow.float64(), metadata={"unit": unit}))
-                arrays.append(pyarrow.array(self.values(name, order)))
-        return pyarrow.Table.from_arrays(arrays, schema=pyarrow.schema(fields))
+                columns[free(column, columns)] = (self.values(name, order), unit)
+        fields = [pyarrow.field(column, pyarrow.float64(), metadata={"unit": unit}) for column, (_, unit) in columns.items()]
+        return pyarrow.Table.from_arrays([pyarrow.array(values) for values, _ in columns.values()], schema=pyarrow.schema(fields))
 
-    def to_xarray(self):
+    def to_xarray(self) -> xarray.Dataset:
         """Values `[time]` and sensitivities `[variable, time]` of every measure and point, with their labels and units: `toe`, `d toe`.
 
         A name that is taken ends in `_`: a measure named `time` is `time_`, since `time`, `variable` and `variable_unit` are
@@ -347,12 +354,13 @@ class Run:
         """
         import xarray
 
-        coordinates = {"time": ("time", self.times, {"units": "s"})}
+        coordinates: dict[str, Any] = {"time": ("time", self.times, {"units": "s"})}
         if self._followed:
             units = [self.model.variables[v].unit for v in self.followed]
             coordinates["variable"] = ("variable", list(self.followed))
             coordinates["variable_unit"] = ("variable", units)
-        data, slopes = {}, []
+        data: dict[str, Any] = {}
+        slopes = []
         for name, output in self.model.outputs.items():
             for order, (column, unit) in enumerate(zip(output.columns, output.units)):
                 data[free(column, coordinates, data)] = ("time", self.values(name, order), {"units": unit, "of": column})

@@ -29,6 +29,11 @@ ABOUT = ("sensitivities", "followed", "stop", "stopped_at", "diagnostics", "summ
 
 def save(run: Run, path: str | os.PathLike) -> None:
     """Writes a run, atomically."""
+    files.write_bytes(path, packed(run))
+
+
+def packed(run: Run) -> bytes:
+    """Contents of the file of a run."""
     of, model = run._native, run.model
     with_d = bool(run._followed)
     arrays: dict[str, np.ndarray] = {"times": run.times, "values": of.values(), "design": np.array(of.design, dtype=float)}
@@ -60,16 +65,12 @@ def save(run: Run, path: str | os.PathLike) -> None:
     arrays["about"] = np.frombuffer(json.dumps(about).encode(), dtype=np.uint8)
     out = io.BytesIO()
     np.savez_compressed(out, **arrays)  # type: ignore[arg-type]
-    files.write_bytes(path, out.getvalue())
+    return out.getvalue()
 
 
 def load(path: str | os.PathLike) -> Run:
     """Reads a run that `run.save(path)` wrote, with its model. Nothing is solved again, except for its page and its loads."""
-    from .model import Model, _restored
-    from .run import Run
-
     name = files.where(path)
-    refused = UsageError.saying(f"`{name}` is not a run of this package, or is damaged; `run.save(path)` writes one")
     try:
         with open(name, "rb") as contents:
             whole = contents.read()
@@ -77,6 +78,15 @@ def load(path: str | os.PathLike) -> Run:
         raise UsageError.saying(f"there is no file `{name}`") from None
     except OSError as error:
         raise FileError.of_system("read", name, error) from error
+    return unpacked(whole, name)
+
+
+def unpacked(whole: bytes, name: str = "the pickled run") -> Run:
+    """The run of a file's contents."""
+    from .model import Model, _restored
+    from .run import Run
+
+    refused = UsageError.saying(f"`{name}` is not a run of this package, or is damaged; `run.save(path)` writes one")
     try:
         if not zipfile.is_zipfile(io.BytesIO(whole)):
             raise refused

@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import os
+import time
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import display
-from .arguments import numbers, same_shape
+from .arguments import Called, numbers, same_shape
 from .arrays import free
 from .errors import UsageError, index_of
 
 if TYPE_CHECKING:
+    import pandas
+    import pyarrow
+    import xarray
+
     from .model import Model
 
 
@@ -71,13 +77,13 @@ class Study:
         """Names of the facts that are tables, for `to_pandas` and `to_xarray`."""
         return tuple(name for name, rows in self.facts.items() if isinstance(rows, list) and rows and all(isinstance(row, dict) for row in rows))
 
-    def to_pandas(self, name: str | None = None):
+    def to_pandas(self, name: str | None = None) -> pandas.DataFrame:
         """Table of one of the `records`, by default the first available of `points`, `metrics`, `measures` and `variables`."""
         import pandas
 
         return pandas.json_normalize(self.facts[self._record(name)])
 
-    def to_xarray(self, name: str | None = None):
+    def to_xarray(self, name: str | None = None) -> xarray.Dataset:
         """Data set of one of the `records`, by the names of its rows, or else by their numbers."""
         record = self._record(name)
         frame = self.to_pandas(record)
@@ -98,17 +104,17 @@ class Study:
         return display.study(self)
 
 
-class Map(dict):
+class Map(dict[str, Any]):
     """A map over the positions of two drivers, as `maps.json` has it (docs/results.md)."""
 
-    def to_xarray(self):
+    def to_xarray(self) -> xarray.Dataset:
         """Values and sensitivities of all measures by the positions of both drivers; NaN where a position was not reached. A measure
         with the name of a driver ends in `_`."""
         import xarray
 
         first, second = self["drivers"]
         axes = (second["name"], first["name"])
-        data = {}
+        data: dict[str, Any] = {}
         for measure in self["measures"]:
             values = np.array(measure["values"], dtype=float)
             data[free(measure["name"], axes, data)] = (axes, values, {"units": measure["unit"]})
@@ -118,12 +124,12 @@ class Map(dict):
         coordinates = {d["name"]: (d["name"], np.array(d["values"], dtype=float), {"units": d["unit"]}) for d in (first, second)}
         return xarray.Dataset(data, coordinates, {"map": self["name"]})
 
-    def to_pandas(self):
+    def to_pandas(self) -> pandas.DataFrame:
         """Table with a row for each position."""
         return self.to_xarray().to_dataframe().reset_index()
 
 
-class DriverTable(dict):
+class DriverTable(dict[str, Any]):
     """A table of outputs over one to three drivers with a proved error, as `hardpoint map` writes it (docs/maps.md).
 
     `table("toe", bump=12.5)` is the interpolation whose error is proved; drivers may be arrays."""
@@ -171,13 +177,13 @@ class DriverTable(dict):
                 total += weight * values[tuple(cell + end for cell, end in zip(cells, corner))]
         return total
 
-    def to_xarray(self):
+    def to_xarray(self) -> xarray.Dataset:
         """Values and derivatives at the knots. An output with the name of a driver ends in `_`."""
         import xarray
 
         axes = tuple(self.drivers)
         shape = [len(knots) for knots in self.drivers.values()]
-        data = {}
+        data: dict[str, Any] = {}
         for one in self["outputs"]:
             for term in one["numbers"]:
                 name = " by ".join([one["name"], *term["by"]])
@@ -201,6 +207,19 @@ def _weights(u: np.ndarray, width: np.ndarray, is_cubic: bool) -> list[list[np.n
     return [[(1 + 2 * u) * rest**2, u * rest**2 * width], [u**2 * (3 - 2 * u), -(u**2) * rest * width]]
 
 
+def timed(method: Called) -> Called:
+    """Method whose study states its time, s, in its facts."""
+
+    @functools.wraps(method)
+    def call(*values: Any, **given: Any) -> Any:
+        began = time.perf_counter()
+        found = method(*values, **given)
+        found.facts["seconds"] = time.perf_counter() - began
+        return found
+
+    return call  # type: ignore[return-value]
+
+
 def outcome(model: Model, text: str, rounded: list[float] | None = None, exact: list[float] | None = None) -> Study:
     found = json.loads(text)
     return Study(model, found["facts"], found["tables"], rounded, exact)
@@ -219,7 +238,7 @@ class SweepResult(Study):
     def __len__(self) -> int:
         return len(self.columns["design"])
 
-    def to_pandas(self, name: str | None = None):
+    def to_pandas(self, name: str | None = None) -> pandas.DataFrame:
         """Table of designs; or `curves`; or one of the `records`."""
         import pandas
 
@@ -227,14 +246,14 @@ class SweepResult(Study):
             return pandas.DataFrame(self.curves)
         return pandas.DataFrame(self.columns) if name is None else super().to_pandas(name)
 
-    def to_xarray(self, name: str | None = None):
+    def to_xarray(self, name: str | None = None) -> xarray.Dataset:
         """Data set of designs; or `curves`, by design, case and time; or one of the `records`."""
         if name is not None and name != "curves":
             return super().to_xarray(name)
         frame = self.to_pandas(name)
         return frame.set_index([key for key in ("design", "case", "time [s]") if key in frame]).to_xarray()
 
-    def to_arrow(self):
+    def to_arrow(self) -> pyarrow.Table:
         """Table of designs."""
         import pyarrow
 

@@ -261,8 +261,9 @@ def new(
 ) -> Model:
     """Writes a commented model file from a template (`hardpoint.templates()`), and reads it. An existing file is not overwritten.
 
-    `hardpoints` are your own ones by the names of the template, or a table (CSV, .xlsx) of them, with their `units` (`mm`) and `axes`
-    (`iso`, `sae`, `adams`, `lotus`, or like `"x back, y right, z up"`).
+    `hardpoints` are your own ones by the names of the template, or a table (CSV, .xlsx) of them. Their `units` are `mm`, `cm`, `m` or
+    `in`, their `axes` `iso`, `sae`, `adams`, `lotus`, or like `"x back, y right, z up"`. Neither is guessed: give both, unless the headings of
+    the table have the units, or the template is planar.
     """
     from .model import read
 

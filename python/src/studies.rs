@@ -145,6 +145,7 @@ impl Model {
         let (file, motions) = &self.searched(case)?;
         let overrides = trade_off::Overrides { goals, points, starts, iterations };
         let request = trade_off::Request::of(&file.model, overrides).map_err(Failure::from)?;
+        request.check_point(point).map_err(Failure::from)?;
         let found = controlled(py, progress, threads(workers), |control| {
             trade_off(&file.model, motions, &request, control)
         })?;

@@ -241,6 +241,9 @@ def test_impossible_studies_report_what_is_missing(strut):
 def test_a_model_with_cases_is_asked_for_one(toe):
     with pytest.raises(hardpoint.UsageError, match="has the cases"):
         toe.run()
+    for call in ("what_if", "verify", "validity", "designs"):
+        with pytest.raises(hardpoint.UsageError, match=rf"select one, as in `model.case\('bump'\).{call}\(...\)`"):
+            getattr(toe, call)(*([{}] if call in ("what_if", "designs") else []))
     assert set(toe.runs()) == set(toe.cases)
 
 

@@ -54,6 +54,43 @@ def test_mypy_finds_nothing_in_the_examples():
     checked(sys.executable, "-m", "mypy", "--config-file", "pyproject.toml", "--strict", "--follow-imports=silent", f"--cache-dir={os.devnull}", *map(str, EXAMPLES))
 
 
+USER = """
+import numpy as np
+import numpy.typing as npt
+
+import hardpoint
+
+model = hardpoint.read("model.toml")
+run = model.run(times=np.linspace(0, 1, 5), laws={"travel": np.array([0.0, 1.0])})
+toe: npt.NDArray[np.float64] = run.values("toe")
+run.to_pandas(), run.to_arrow(), run.to_xarray(), run.animate(), run.plot("toe"), model.runs(sensitivities=False)
+position = model.at(travel=12)
+position["toe"], position.derivative("toe", "travel"), position.to_pandas(), position.to_xarray()
+designs = model.designs([[0.0]], "toe")
+designs.to_pandas(), designs.to_xarray(), designs.metric("toe_error")
+function = hardpoint.Function(model, of=["toe"], stopped=np.nan)
+function(function.start), function.jacobian(function.start), function.value(function.start), function.gradient([0.0])
+function.many(np.zeros((2, 1))), function.many_jacobians(np.zeros((2, 1))), function.design(function.start)
+study = model.optimize()
+study.to_pandas("variables"), study.to_xarray(), model.sweep().to_arrow(), model.maps()[0].to_pandas(), model.maps()[0].to_xarray()
+table = model.table({"travel": (0, 1)}, of="toe", error="1deg")
+table("toe", travel=[0, 1]), table.to_xarray(), table.proved_error
+hardpoint.build(name="empty").with_(description="changed").export("model.c", design=True)
+try:
+    model.trade_off(points=4).save("better.toml")
+except hardpoint.MotionStopped as error:
+    print(error.code, error.run)
+"""
+"""A user's code that calls what has tables, and what takes arrays."""
+
+
+def test_mypy_finds_nothing_in_code_of_a_user(tmp_path):
+    pytest.importorskip("mypy")
+    (tmp_path / "user.py").write_text(USER)
+    options = ["--config-file", "pyproject.toml", "--strict", "--follow-imports=silent", f"--cache-dir={os.devnull}"]
+    checked(sys.executable, "-m", "mypy", *options, str(tmp_path / "user.py"))
+
+
 def test_pyright_finds_nothing_in_the_examples():
     pytest.importorskip("pyright")
     checked(sys.executable, "-m", "pyright", "--pythonpath", sys.executable, *map(str, EXAMPLES))

@@ -263,6 +263,22 @@ def test_names_in_a_data_set_are_unique():
     assert list(data.coords) == ["time", "variable", "variable_unit"]
 
 
+def test_columns_of_an_arrow_table_are_unique():
+    run = hardpoint.parse(TAKEN).run()
+    arrow = run.to_arrow()
+    assert len(set(arrow.column_names)) == arrow.num_columns
+    assert (arrow["time"].to_numpy() == run.times).all() and (arrow["time_"].to_numpy() == run.values("time")).all()
+
+
+def test_designs_without_metrics_are_a_data_set(toe):
+    pytest.importorskip("xarray")
+    bump = toe.case("bump")
+    found = bump.designs([[0.0] * len(bump.variables)], "toe", metrics=False)
+    assert found.to_xarray()["values"].shape == found.values.shape and found.metric_names == ()
+    with pytest.raises(hardpoint.UsageError, match="solved without metrics"):
+        found.metric("toe_error")
+
+
 def test_a_model_built_in_code_is_that_of_the_file():
     built = hardpoint.build(
         name="slider-crank",

@@ -148,6 +148,34 @@ def test_stored_runs_have_the_same_numbers(toe, tmp_path):
     assert not again.values("toe").flags.writeable and list(tmp_path.iterdir()) == [path]
 
 
+def test_runs_are_pickled_with_their_numbers(toe, strut):
+    run = toe.run({"outer_z": 1.5}, case="bump")
+    again = pickle.loads(pickle.dumps(run))
+    assert again.case == "bump" and again.design == run.design and repr(again) == repr(run) and again.metrics == run.metrics
+    assert (again.values("toe") == run.values("toe")).all()
+    assert (again.sensitivity("toe", "outer_z") == run.sensitivity("toe", "outer_z")).all()
+    assert (pickle.loads(pickle.dumps(again)).times == run.times).all()
+    many = toe.designs([[0.0] * 5], "toe", case="bump")
+    assert (pickle.loads(pickle.dumps(many)).values == many.values).all()
+
+
+def test_positions_are_pickled_with_their_numbers(strut, press):
+    for position in (
+        strut.at(rack_drive=[0.0, 1000.0, 10.0], partial=True),
+        strut.at(rack_drive=3.0, sensitivities=False),
+        press.at(motor=[10, 20], forces={"work": 300.0}),
+    ):
+        again = pickle.loads(pickle.dumps(position))
+        assert repr(again) == repr(position) and again.stops == position.stops
+        body, name = position.model.bodies[0], position.model.measures[0]
+        assert np.array_equal(again[name], position[name], equal_nan=True)
+        assert np.array_equal(again.position(body), position.position(body), equal_nan=True)
+        if position._slopes is not None:
+            driver = next(iter(position.drivers))
+            assert np.array_equal(again.derivative(name, driver), position.derivative(name, driver), equal_nan=True)
+            assert not again[name].flags.writeable
+
+
 def test_a_stored_part_of_a_motion_has_its_reason(strut, tmp_path):
     run = strut.run({"tie_rod_outer_z": 1000.0}, partial=True)
     run.save(tmp_path / "part.npz")
@@ -355,6 +383,7 @@ def test_clearances_of_a_changed_model_read_its_shapes(tmp_path):
 
 def test_everything_has_a_repr_that_says_what_it_is(toe, press):
     run = press.run()
+    assert repr(run.animate(frames=2)).startswith("<hardpoint animation of ")
     for thing in (toe, run, run.driver("motor"), run.reaction("A"), run.body(press.bodies[0]), toe.at(), hardpoint.Function(toe), toe.designs([[0.0] * 5], case="bump"), toe.optimize()):
         text = repr(thing)
         assert text.startswith("<hardpoint.") and " at 0x" not in text, text

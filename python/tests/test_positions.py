@@ -166,6 +166,46 @@ def test_laws_as_arrays_pass_through_their_values(strut):
     assert strut.run(times={"end": 1, "steps": 4}).times.tolist() == [0, 0.25, 0.5, 0.75, 1]
 
 
+def test_positions_are_a_data_set(strut):
+    pytest.importorskip("xarray")
+    rack, travel = np.linspace(-20, 20, 5), np.linspace(-30, 30, 7)
+    grid = strut.at(rack_drive=rack[:, None], strut_drive=travel)
+    data = grid.to_xarray()
+    assert data["toe"].dims == ("rack_drive", "strut_drive") and data["toe"].attrs["units"] == "deg"
+    assert (data["toe"].sel(rack_drive=rack[3], strut_drive=travel[2]).values == grid["toe"][3, 2]).all()
+    assert (data["d toe"].sel(variable="rack_drive").values == grid.derivative("toe", "rack_drive")).all()
+    assert (data["d toe"].sel(variable="tie_rod_outer_z").values == grid.sensitivity("toe", "tie_rod_outer_z")).all()
+    assert data["rack_drive"].attrs["units"] == "mm" and set(data["toe"].coords) == {"rack_drive", "strut_drive"}
+    # Along a path both drivers change.
+    path = strut.at(rack_drive=rack, strut_drive=0.5 * rack, sensitivities=False).to_xarray()
+    assert path["toe"].dims == ("position",) and (path["strut_drive"].values == 0.5 * rack).all() and "d toe" not in path
+    one = strut.at(strut_drive=3)
+    assert float(one.to_xarray()["toe"]) == one["toe"] and float(one.to_xarray()["strut_drive"]) == 3
+
+
+def test_a_limit_of_the_program_is_named_as_such():
+    model = hardpoint.read(MODELS / "four_bar.toml")
+    with pytest.raises(hardpoint.MotionStopped, match="limit of the program, not of the mechanism, is `motor` = 5.72") as raised:
+        model.at(motor=1e9)
+    assert "100,000 rad" in raised.value.help and "it stops" not in str(raised.value)
+
+
+def test_a_loop_over_forces_has_few_solvers(press):
+    values = [press.at(motor=30, forces={"work": float(force)})["torque"] for force in range(10)]
+    assert values == sorted(values) or values == sorted(values, reverse=True)
+    assert press._solver.cache_info().currsize <= press._solver.cache_info().maxsize < 10
+
+
+def test_laws_as_arrays_are_at_rest_at_their_ends(strut):
+    times = np.linspace(0, 2, 9)
+    clamped = strut.run(times=times, laws={"strut_drive": 10 * times, "rack_drive": 0}).values("wheel_travel", "rate")
+    assert clamped[[0, -1]] == pytest.approx(0, abs=1e-9) and abs(clamped[4]) > 1
+    table = {"type": "table", "points": np.column_stack([times, 10 * times]), "ends": "natural"}
+    natural = strut.run(times=times, laws={"strut_drive": table, "rack_drive": 0}).values("wheel_travel", "rate")
+    straight = strut.run(times=times, laws={"strut_drive": "10 * t", "rack_drive": 0}).values("wheel_travel", "rate")
+    assert natural == pytest.approx(straight, rel=1e-9)
+
+
 def test_laws_hold_in_their_case_only(toe):
     run = toe.run(case="bump", laws={"strut_drive": "20 * t"}, times=[0, 1])
     assert run.case == "bump" and run.metrics and len(run) == 2

@@ -1,6 +1,7 @@
 """Studies have the results of the command line."""
 
 import json
+import time
 
 import numpy as np
 import pytest
@@ -48,6 +49,18 @@ def test_trade_off(command):
     assert [study.design[name] for name in names] == pytest.approx(point["variables"])
     moved = hardpoint.read(path).run(dict(zip(names, point["variables"])))
     assert [moved.metric(g["metric"]) for g in study.facts["goals"]] == pytest.approx(point["goals"], rel=1e-6)
+
+
+def test_a_point_beyond_the_front_is_refused_before_the_search():
+    model = hardpoint.read(MODELS / "studies/wishbone_trade_off.toml")
+    with pytest.raises(hardpoint.UsageError, match="there is no point 9; the points are numbered from 0 to 3"):
+        model.trade_off(points=4, point=9)
+
+
+def test_studies_state_their_time(toe):
+    began = time.perf_counter()
+    seconds = toe.sweep(samples=8, ranges={"outer_z": (-1, 1)}).facts["seconds"] + toe.case("bump").verify().facts["seconds"]
+    assert 0 < seconds < time.perf_counter() - began
 
 
 def test_tolerance(command):

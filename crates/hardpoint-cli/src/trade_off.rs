@@ -37,11 +37,7 @@ fn trade_off_in(session: &Session, options: &TradeOff) -> Result<Outcome, Outcom
         [options.points, options.starts, options.iterations].map(|n| n.map(NonZero::get));
     let overrides = Overrides { goals: options.goals.clone(), points, starts, iterations };
     let request = Request::of(&file.model, overrides).map_err(|e| session.refused(&file, &e))?;
-    if let Some(point) = options.point.filter(|k| *k >= request.points) {
-        let message =
-            format!("there is no point {point}: the points are numbered from 0 to {}", request.points - 1);
-        return Err(session.misunderstood(&message));
-    }
+    request.check_point(options.point).map_err(|e| session.refused(&file, &e))?;
     session.may_save(&options.common.model, options.save.as_deref())?;
     session.can_save(&file, &request.settings.variables, options.save.as_deref())?;
     let models = file.model.motions();

@@ -110,4 +110,18 @@ impl Request {
         RequestError::unless_counted("designs of a front", points, Self::MOST_POINTS)?;
         Ok(Self { settings, points })
     }
+
+    /// Checks the number of a selected design of the front.
+    ///
+    /// # Errors
+    /// A [`RequestError`] if the front cannot have so many designs.
+    pub fn check_point(&self, point: Option<usize>) -> Result<(), RequestError> {
+        match point {
+            Some(k) if k >= self.points => Err(RequestError::invalid(
+                format!("there is no point {k}"),
+                format!("the points are numbered from 0 to {}", self.points - 1),
+            )),
+            _ => Ok(()),
+        }
+    }
 }
