@@ -402,10 +402,10 @@ def test_every_coordinate_is_a_parameter_on_request(tmp_path):
     description = fmpy.read_model_description(str(tmp_path / "corner.fmu"))
     parameters = {v.name: v for v in description.modelVariables if v.causality == "parameter"}
     added = [name for name in whole.variables if name not in model.variables]
-    assert added and {f"design.'{name}'" for name in added} <= set(parameters)
+    assert added and {f"design.{name}" for name in added} <= set(parameters)
     # Tuned to a millimetre and a thousandth of a radian, 20 mm from the design configuration.
     chosen = {name: 1e-3 / si(whole, whole.variables[name].unit) for name in (added[0], added[-1])}
-    start = {"drivers.spring_drive.position": 0.02, **{f"design.'{name}'": 1e-3 for name in chosen}}
+    start = {"drivers.spring_drive.position": 0.02, **{f"design.{name}": 1e-3 for name in chosen}}
     result = fmpy.simulate_fmu(str(tmp_path / "corner.fmu"), stop_time=0.1, start_values=start, output=["measures.toe.value"])
     at = next(driver["nominal"] for driver in model.drivers if driver["name"] == "spring_drive") + 20
     expected, nominal = (of["toe"] * si_of(model, "toe", 0) for of in (whole.at(spring_drive=at, design=chosen), model.at(spring_drive=at)))

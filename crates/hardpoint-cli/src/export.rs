@@ -51,11 +51,8 @@ fn export_to(session: &Session, options: &Export, model: &Path, to: &Path) -> Re
             Format::of(&name).ok_or_else(|| session.misunderstood(&why()))?
         }
     };
-    let with_design = [
-        ("--design", options.design),
-        ("--coordinates", options.coordinates),
-        ("--tilts", options.tilts),
-    ];
+    let with_design =
+        [("--design", options.design), ("--coordinates", options.coordinates), ("--tilts", options.tilts)];
     let with_design = with_design.iter().find(|(_, given)| *given).map(|(option, _)| *option);
     if let Some(option) = with_design.filter(|_| !format.has_design()) {
         let with: Vec<&str> = FORMATS.iter().filter(|f| f.has_design()).map(|f| f.name).collect();
