@@ -55,6 +55,7 @@ def packed(run: Run) -> bytes:
         "files": model._native.files,
         "added": model._added,
         "case": run.case,
+        "selected": model._case is not None,
         "sensitivities": with_d,
         "followed": run._followed,
         "stop": of.stop,
@@ -105,8 +106,10 @@ def unpacked(whole: bytes, name: str = "the pickled run") -> Run:
         raise refused
     added = (bool(about["added"][0]), bool(about["added"][1]))
     native = _restored(about["text"], about["file"], tuple(sorted(about["files"].items())), added, None)._native
-    model = Model(native, None, added)
-    index = model.cases.index(about["case"]) if about["case"] is not None else 0
+    whole = Model(native, None, added)
+    index = whole.cases.index(about["case"]) if about["case"] is not None else 0
+    # Older files do not have it.
+    model = Model(native, index, added) if about.get("selected") else whole
     return Run(model, index, Stored(model._native, index, arrays, about))
 
 

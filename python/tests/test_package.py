@@ -155,6 +155,8 @@ def test_runs_are_pickled_with_their_numbers(toe, strut):
     assert (again.values("toe") == run.values("toe")).all()
     assert (again.sensitivity("toe", "outer_z") == run.sensitivity("toe", "outer_z")).all()
     assert (pickle.loads(pickle.dumps(again)).times == run.times).all()
+    selected = pickle.loads(pickle.dumps(toe.case("steer").run()))
+    assert selected.case == selected.model.run().case == "steer"
     many = toe.designs([[0.0] * 5], "toe", case="bump")
     assert (pickle.loads(pickle.dumps(many)).values == many.values).all()
 
