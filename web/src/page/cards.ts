@@ -4,7 +4,7 @@ import { number, per, pretty, signed } from '../format'
 import { aboutQuantity } from '../glossary'
 import type { Value } from '../payload'
 import type { Report } from '../report'
-import { noise, rounded } from '../rounding'
+import { noise, rounded, tolerated } from '../rounding'
 import { hasOneFreedom, isTravel, onSideOf } from '../sheet'
 import type { State } from '../state'
 import { moverOf } from './contents'
@@ -14,6 +14,8 @@ type Target = [low: number | null, high: number | null]
 
 /** Digits of a number on a card. */
 const DIGITS = 4
+/** Smallest length of a bar, as a fraction of its largest number: closer numbers have the same digits on the card. */
+const SHORTEST = 10 ** -DIGITS
 /** With more cards than this, those of quantities that the sheet does not show are behind a button. */
 const MANY = 14
 /** Kinds of values that are taken at one position of the whole motion. */
@@ -182,16 +184,30 @@ function miss(value: number, [low, high]: Target): number {
   return Math.max(0, (low ?? -Infinity) - value, value - (high ?? Infinity))
 }
 
+/** True if a value misses its target by more than the accuracy with which a search ends on a limit. */
+export function isMissed(value: number, target: Target): boolean {
+  return miss(value, target) > tolerated(sizeOf([...target, value]))
+}
+
+/** Positions of the band of a target and of the value on the bar of a card, from 0 to 1. */
+export function placesOf([low, high]: Target, now: number | null): { from: number; to: number; tick: number } {
+  const ends = [low, high, now].filter((end) => end !== null)
+  const [minimum, maximum] = [Math.min(...ends), Math.max(...ends)]
+  const size = sizeOf(ends)
+  const room = Math.max(maximum - minimum || size || 1, SHORTEST * size) * 0.35
+  const at = (value: number) => (value - minimum + room) / (maximum - minimum + 2 * room)
+  return { from: low === null ? 0 : at(low), to: high === null ? 1 : at(high), tick: now === null ? -0.1 : at(now) }
+}
+
+function sizeOf(numbers: (number | null)[]): number {
+  return Math.max(...numbers.map((x) => Math.abs(x ?? 0)))
+}
+
 /** Places band and tick, and describes the value relative to its target. */
 function showTarget(scale: HTMLElement, target: Target, now: number | null): string {
   const [low, high] = target
-  const ends = [low, high, now].filter((end) => end !== null)
-  const [minimum, maximum] = [Math.min(...ends), Math.max(...ends)]
-  const room = (maximum - minimum || Math.abs(maximum) || 1) * 0.35
-  const at = (value: number) => `${(100 * (value - minimum + room)) / (maximum - minimum + 2 * room)}%`
-  scale.style.setProperty('--from', low === null ? '0%' : at(low))
-  scale.style.setProperty('--to', high === null ? '100%' : at(high))
-  scale.style.setProperty('--tick', now === null ? '-10%' : at(now))
+  for (const [name, place] of Object.entries(placesOf(target, now)))
+    scale.style.setProperty(`--${name}`, `${100 * place}%`)
   const wanted =
     low === null
       ? `at most ${number(high ?? NaN)}`
@@ -199,7 +215,7 @@ function showTarget(scale: HTMLElement, target: Target, now: number | null): str
         ? `at least ${number(low)}`
         : `${number(low)} to ${number(high)}`
   scale.title = `wanted: ${wanted}`
-  const missed = now !== null && miss(now, target) > 0
+  const missed = now !== null && isMissed(now, target)
   scale.classList.toggle('missed', missed)
   return now === null ? '' : `${missed ? 'misses' : 'meets'} the target, ${wanted}`
 }
