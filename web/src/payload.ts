@@ -1093,7 +1093,11 @@ export type StudyTables = {
  */
 title: string,
 /**
- * Tables of the result, the summary first.
+ * Lines that answer the question of the study, shown above its tables and its plot.
+ */
+answer: Array<Fact>,
+/**
+ * Tables of the result.
  */
 tables: Array<Table>, };
 

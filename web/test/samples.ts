@@ -25,6 +25,8 @@ export interface Samples {
   cases: string
   /** The strut, fitted to measured data. */
   fitted: string
+  /** A double wishbone suspension with the front of two goals. */
+  front: string
   /** A front axle on bushings, in equilibrium over wheel travel. */
   elastic: string
   /** A four-bar whose rods pass screws: shapes, one of which hits another. */
@@ -77,6 +79,7 @@ export default async function setup(project: TestProject): Promise<() => void> {
   const grid = `[cases.both]\ngrid = { strut_drive = ${ends}, rack_drive = ${ends} }`
   writeFileSync(cases, toe.replace('[design]\n', `${grid}\n\n[design]\n${tilt}\n`))
   const measured = ['strut_calibrate.toml', 'strut_measured.csv'].map((file) => join(MODELS, 'studies', file))
+  const wishbone = join(MODELS, 'studies', 'wishbone_trade_off.toml')
   const change = ['--set', 'tie_rod_outer.z=+6mm', '-o', join(folder, 'changed')]
   const higher = [
     '--set',
@@ -114,6 +117,7 @@ export default async function setup(project: TestProject): Promise<() => void> {
     () => command(hardpoint, ['run', join(MODELS, 'studies', 'knee.toml'), '-o', join(folder, 'knee')]),
     () => command(hardpoint, ['run', cases, '-o', join(folder, 'cases')]),
     () => command(hardpoint, ['calibrate', ...measured, '-o', join(folder, 'fitted')]),
+    () => command(hardpoint, ['trade-off', wishbone, '--points', '5', '-o', join(folder, 'front')]),
     ...files.map(
       (file) => () => command(hardpoint, ['run', join(MODELS, file), '-o', join(folder, basename(file, '.toml'))]),
     ),
@@ -129,6 +133,7 @@ export default async function setup(project: TestProject): Promise<() => void> {
     tolerance: page('tolerance', 'report-bump.html'),
     cases: page('cases', 'report.html'),
     fitted: page('fitted', 'report.html'),
+    front: page('front', 'report.html'),
     elastic: page('elastic', 'report.html'),
     knee: page('knee', 'report.html'),
     large: page('large', 'report.html'),

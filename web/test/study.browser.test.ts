@@ -7,13 +7,46 @@ import { NO_3D } from './browser'
 import { pages } from './pages'
 import { reportOf } from './payload'
 
-const { tolerance } = inject('samples')
+const { tolerance, fitted, front } = inject('samples')
 const open = pages(NO_3D)
 
 /** A metric of a curve is interpolated by splines, the table of values by straight lines. */
 const INTERPOLATION = 1e-3
 
 describe('the page of a study', () => {
+  const SMALL = { viewport: { width: 1280, height: 800 } }
+
+  test('of a fit opens on the fitted values with their standard deviations, on the first screen', async () => {
+    const page = await open(fitted, SMALL)
+    expect(await page.getByTestId('tab-study').getAttribute('aria-selected')).toBe('true')
+    const study = page.getByTestId('study')
+    expect(await study.getByTestId('answer').innerText()).toMatch(/^result\s+found: .*\s*residuals/s)
+    const table = study.locator('table').first()
+    const header = (await table.locator('th').allInnerTexts()).join(' ')
+    expect(header).toContain('fitted')
+    expect(header).toContain('standard deviation')
+    const last = (await table.locator('tr').last().boundingBox())!
+    expect(last.y + last.height).toBeLessThan(801)
+  })
+
+  test('of a front shows result, front and reading on the first screen', async () => {
+    const page = await open(front, SMALL)
+    expect(await page.getByTestId('tab-designs').innerText()).toBe('Front')
+    const plot = page.getByTestId('sweep')
+    expect(await plot.getByTestId('answer').innerText()).toMatch(/^result\s+trade-off between .*\s*balanced\s+point/s)
+    await plot.locator('.picture').press('ArrowRight')
+    await expect.poll(() => page.getByTestId('sweep-reading').innerText()).toContain('point 0: track')
+    const panel = (await page.locator('#panel-designs').boundingBox())!
+    for (const part of [plot.getByTestId('answer'), plot.locator('svg'), page.getByTestId('sweep-reading')]) {
+      const box = (await part.boundingBox())!
+      expect(box.y).toBeGreaterThanOrEqual(panel.y)
+      expect(box.y + box.height).toBeLessThanOrEqual(panel.y + panel.height)
+    }
+    const { width, height } = (await plot.locator('svg').boundingBox())!
+    expect(width).toBeGreaterThan(400)
+    expect(height).toBeGreaterThan(150)
+  })
+
   test('opens on its result, which says so when the design is another one', async () => {
     const page = await open(tolerance)
     expect(await page.getByTestId('tab-study').getAttribute('aria-selected')).toBe('true')

@@ -685,6 +685,7 @@ impl CalibrateFacts {
         let validated = self.validation.as_ref().and_then(|v| ValidatedMeasure::table(&v.measures));
         let by_prior = self.by_prior.iter().take(LISTED);
         let tables = [
+            CalibratedVariable::design_table(&self.variables),
             CalibratedVariable::prior_table(&self.variables).filter(|_| has_source),
             UnidentifiableFact::table(
                 "Determined by priors",
@@ -692,7 +693,6 @@ impl CalibrateFacts {
                 by_prior,
             ),
             validated,
-            CalibratedVariable::design_table(&self.variables),
             correlation_table(&self.together),
             UnidentifiableFact::table(
                 "Not determined",
@@ -715,7 +715,7 @@ impl CalibrateFacts {
         page.summary.insert(0, fact);
         let duration = ("time taken", seconds(self.seconds));
         let lines = self.rows().into_iter().chain([duration]).collect();
-        page.put_study("Calibration", lines, &[], self.tables());
+        page.put_study("Calibration", lines, &["result", "residuals", "bounds"], self.tables());
         Payload { sweep: Some(of.plot()), ..page }
     }
 }

@@ -852,7 +852,7 @@ impl OptimizeFacts {
         let goal = |g: &GoalFact| model.metrics.iter().find(|m| m.name == g.metric);
         page.open_on(self.goals.iter().find_map(goal), outputs);
         let tables = self.tables().into_iter().chain([self.iteration_table()]);
-        page.put_study("Search", self.rows(), &[], tables);
+        page.put_study("Search", self.rows(), &["result"], tables);
         page
     }
 

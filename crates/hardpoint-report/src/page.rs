@@ -160,7 +160,9 @@ pub struct Payload {
 pub struct StudyTables {
     /// Title of its tab.
     pub title: String,
-    /// Tables of the result, the summary first.
+    /// Lines that answer the question of the study, shown above its tables and its plot.
+    pub answer: Vec<Fact>,
+    /// Tables of the result.
     pub tables: Vec<Table>,
 }
 

@@ -21,27 +21,28 @@ impl Payload {
         }
     }
 
-    /// Makes this the page of a study: with a tab for its lines and tables, and the lines that `cards` names on the
-    /// cards.
+    /// Makes this the page of a study: with a tab that shows the lines that `answer` names, the first table, all lines
+    /// as a summary, and the other tables.
     pub(crate) fn put_study(
         &mut self,
         title: &str,
         lines: Vec<(&'static str, String)>,
-        cards: &[&str],
+        answer: &[&str],
         tables: impl IntoIterator<Item = Table>,
     ) {
-        let shown = lines.iter().filter(|(what, _)| cards.contains(what));
+        let shown = lines.iter().filter(|(what, _)| answer.contains(what));
         let shown = shown.map(|(what, is)| Fact { label: (*what).into(), value: is.clone() });
-        self.summary.splice(0..0, shown);
-        let tables = std::iter::once(Table::of_lines("Summary", lines)).chain(tables).collect();
-        self.study = StudyTables::of(title, tables);
+        let answer = shown.collect();
+        let mut tables: Vec<Table> = tables.into_iter().collect();
+        tables.insert(tables.len().min(1), Table::of_lines("Summary", lines));
+        self.study = Some(StudyTables { title: title.into(), answer, tables });
     }
 }
 
 impl StudyTables {
     /// Tables of a study under a title, if there are any.
     pub(crate) fn of(title: &str, tables: Vec<Table>) -> Option<Self> {
-        (!tables.is_empty()).then(|| Self { title: title.into(), tables })
+        (!tables.is_empty()).then(|| Self { title: title.into(), answer: Vec::new(), tables })
     }
 }
 

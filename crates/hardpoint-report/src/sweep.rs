@@ -611,7 +611,7 @@ impl SweepFacts {
     ) -> Payload {
         let first = swept.sweep.metrics().iter().find(|m| m.motion == motion);
         page.open_on(first.map(|m| &swept.model().metrics[m.metric]), outputs);
-        page.put_study("Sweep", self.rows(), &["failed"], self.tables());
+        page.put_study("Sweep", self.rows(), &["result", "failed"], self.tables());
         Payload { sweep: Some(plot.clone()), ..page }
     }
 }

@@ -584,7 +584,7 @@ impl ToleranceInputs<'_> {
         page.designs.extend(designs.into_iter().filter(|d| d.quantities.iter().any(Option::is_some)));
         page.covariance_root = Some(self.covariance_root());
         let tables = facts.tables().into_iter().chain(self.histograms(motion));
-        page.put_study("Tolerances", facts.rows(), &["yield", "failed"], tables);
+        page.put_study("Tolerances", facts.rows(), &["result", "yield", "failed"], tables);
         page
     }
 

@@ -1,6 +1,6 @@
 import { css, el, onSchemeChange, prose, setText } from '../dom'
 import { Plot } from '../plot'
-import type { StudyTables, Table } from '../payload'
+import type { Fact, StudyTables, Table } from '../payload'
 import type { Report } from '../report'
 import type { State } from '../state'
 import { whileSeen } from './tabs'
@@ -46,17 +46,24 @@ export function checks(state: State): HTMLElement {
 }
 
 /** Result of the study of which this is the page; nothing of it changes with the design. */
-export function studyTables(state: State, { title, tables }: StudyTables): HTMLElement {
+export function studyTables(state: State, study: StudyTables): HTMLElement {
   const heading = el('p', { class: 'of-design', role: 'status' }, 'Result of the study, not of the present design')
   const sync = () => (heading.hidden = state.isRecorded)
   state.onChoice(sync)
   sync()
   return el(
     'section',
-    { class: 'checks', 'data-testid': 'study', 'aria-label': title },
+    { class: 'checks', 'data-testid': 'study', 'aria-label': study.title },
     heading,
-    ...tables.map(factTable),
+    answerOf(study),
+    ...study.tables.map(factTable),
   )
+}
+
+/** Lines that answer the question of a study. */
+export function answerOf({ answer }: StudyTables): HTMLElement {
+  const line = ({ label, value }: Fact) => el('div', {}, el('dt', {}, label), el('dd', {}, ...prose(value)))
+  return el('dl', { class: 'answer', 'data-testid': 'answer' }, ...answer.map(line))
 }
 
 /** Heading over numbers of another design than the present one; hidden otherwise. */

@@ -10,7 +10,7 @@ import { sweepPlot } from '../sweep/scatter'
 import { settingsAt } from '../sweep/settings'
 import { bar } from './bar'
 import { cards } from './cards'
-import { checks, studyTables } from './checks'
+import { answerOf, checks, studyTables } from './checks'
 import { comparison } from './comparison'
 import { Curves } from './curves'
 import { exports } from './exports'
@@ -96,6 +96,7 @@ export function page(root: HTMLElement, state: State, tools: Tools = {}): PagePa
   curves?.element.classList.add('area-curves')
   tables.element.classList.add('area-tables')
   root.classList.toggle('no-curves', !hasQuantities)
+  root.classList.toggle('of-study', (report.study?.answer.length ?? 0) > 0)
   const head = bar(state, {
     find: search?.element,
     exports: () => [...(tools.exports?.() ?? []), ...exports(state, curves?.figures ?? [], scene.view)],
@@ -140,16 +141,21 @@ function tableTabs(state: State, limits?: VariableLimits): Tab[] {
   if (variables.length > 0) all.push({ name: 'variables', title: 'Variables', content: variableList(state, limits) })
   if (sweep) {
     const title = { design: 'Designs', point: 'Front' }[sweep.what] ?? 'Residuals'
-    const plot = sweepPlot(sweep, (k) => state.setDesign(settingsAt(state.report, sweep, k)))
+    const answer = study && answerOf(study)
+    const plot = sweepPlot(sweep, (k) => state.setDesign(settingsAt(state.report, sweep, k)), answer)
     const heading = sweep.what === 'posture' ? [recordHeading(state, 'Fitted design')] : []
-    all.push({ name: 'designs', title, content: el('div', {}, ...heading, plot) })
+    all.push({ name: 'designs', title, content: el('div', { class: 'filling' }, ...heading, plot) })
   }
   if (maps.length > 0) {
     const selected = quantities[state.choice.quantity]?.name ?? ''
     const drawn = maps.map((map) => driverMap(map, selected))
     all.push({ name: 'maps', title: 'Maps', content: el('div', {}, recordHeading(state), ...drawn) })
   }
-  if (study) all.push({ name: 'study', title: study.title, content: studyTables(state, study) })
+  if (study) {
+    const tab = { name: 'study', title: study.title, content: studyTables(state, study) }
+    // Residuals check a result, which comes first; swept designs and fronts are results.
+    all.splice(sweep?.what === 'posture' ? all.findIndex(({ name }) => name === 'designs') : all.length, 0, tab)
+  }
   if (quantities.length > 0 && variables.length > 0) {
     const content = el('div', { class: 'influence' }, rankingTable(state), heatMap(state))
     all.push({ name: 'table', title: 'Influence', content })

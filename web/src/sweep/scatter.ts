@@ -6,9 +6,6 @@ import type { Sweep, SweepAxis } from '../report'
 import { along, nearest } from './nearest'
 
 const MARGIN = { left: 70, right: 16, top: 10, bottom: 46 }
-/** The picture is so high for its width, and no higher, px. */
-const SHAPE = 0.62
-const HIGHEST = 440
 /** About one number of an axis on that many pixels. */
 const TICK = 70
 /** A design is pointed at from so far, px. */
@@ -19,10 +16,10 @@ const FEW = 200
 
 /**
  * Swept designs as points over two of their variables and metrics, and what Sobol's indices say of the metric that is
- * shown. The index of a point that is pressed, or dragged along, is passed on.
+ * shown. The index of a point that is pressed, or dragged along, is passed on. Above the plot is the answer of the study.
  */
-export function sweepPlot(sweep: Sweep, setDesign?: (point: number) => void): HTMLElement {
-  return new Scatter(sweep, setDesign).element
+export function sweepPlot(sweep: Sweep, setDesign?: (point: number) => void, answer?: HTMLElement): HTMLElement {
+  return new Scatter(sweep, setDesign, answer).element
 }
 
 class Scatter {
@@ -35,12 +32,13 @@ class Scatter {
   readonly #frame: HTMLElement
   #axes?: { x: Axis; y: Axis }
   #points: number[] = []
-  #width = 0
+  #size = [0, 0]
   #chosen?: number
 
   constructor(
     private readonly sweep: Sweep,
     private readonly setDesign?: (point: number) => void,
+    answer?: HTMLElement,
   ) {
     const render = () => this.#render()
     const choice = (name: string, chosen: number) =>
@@ -80,17 +78,26 @@ class Scatter {
     this.element = el(
       'section',
       { class: 'sweep', 'data-testid': 'sweep' },
-      axes,
-      this.#frame,
-      this.#reading,
-      el('p', { class: 'note' }, note + hint),
+      el(
+        'div',
+        { class: 'front' },
+        answer,
+        axes,
+        el(
+          'div',
+          { class: 'sides' },
+          this.#frame,
+          el('div', { class: 'words' }, this.#reading, el('p', { class: 'note' }, note + hint)),
+        ),
+      ),
       this.#bars,
     )
     render()
     new ResizeObserver(([entry]) => {
-      const width = Math.round(entry.contentRect.width)
-      if (width === this.#width || width === 0) return
-      this.#width = width
+      const { width, height } = entry.contentRect
+      const size = [width, height].map(Math.round)
+      if (size.includes(0) || size.every((length, k) => length === this.#size[k])) return
+      this.#size = size
       render()
     }).observe(this.#frame)
   }
@@ -113,9 +120,9 @@ class Scatter {
 
   #render(): void {
     this.#renderBars()
-    if (this.#width === 0) return
+    const [width, height] = this.#size
+    if (width === 0) return
     const { x: over, y: of } = this.#shown()
-    const [width, height] = [this.#width, Math.min(HIGHEST, Math.round(this.#width * SHAPE))]
     const [right, bottom] = [width - MARGIN.right, height - MARGIN.bottom]
     const x = linearAxis(ends(over), MARGIN.left + 6, right - 6, Math.max(2, (right - MARGIN.left) / TICK))
     const y = linearAxis(ends(of), bottom - 6, MARGIN.top + 6, Math.max(2, (bottom - MARGIN.top) / TICK))
