@@ -14,6 +14,12 @@ use super::format::{Key, Need, Shape, THROUGH, Table};
 use super::places::EntryPlace;
 use super::reader::{Reader, all_read, quoted};
 
+/// Only key that has a name as its last word, such as `max_iterations` for `iterations`.
+fn longer<'a>(name: &str, keys: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    let mut found = keys.filter(|key| key.strip_suffix(name).is_some_and(|first| first.ends_with('_')));
+    found.next().filter(|_| found.next().is_none())
+}
+
 /// Maximum number of names in a list.
 const MOST_NAMES: usize = 10_000;
 
@@ -45,6 +51,7 @@ impl Reader<'_> {
             // Of equally close keys a missing one is meant.
             let (given, missing): (Vec<_>, Vec<_>) = names().partition(|k| fields.get(k).is_some());
             let close = closest(name, missing.into_iter().chain(given.iter().copied()));
+            let close = close.or_else(|| longer(name, names()));
             let what = &fields.what;
             let message = match close {
                 Some(close) => format!("unknown key `{}` in {what}; did you mean `{close}`?", shown(name)),
