@@ -660,7 +660,8 @@ pub enum DesignKind {
     FirstOrder,
     /// Predicted from first and second derivatives.
     SecondOrder,
-    /// Edge of the band of the curves of many designs, not a design itself.
+    /// Edge of the band of the curves of many designs, or a curve between them, not a design itself; edges by standard
+    /// deviations come first.
     Band,
     /// The nominal design with rigid joints in place of the elastic ones.
     Rigid,

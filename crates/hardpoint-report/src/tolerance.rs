@@ -21,6 +21,37 @@ use crate::study::{BeforeAfter, Evaluations, FailureFact, bar, case_name, percen
 
 /// Half width of a band in standard deviations: 99.73 % of a normal distribution.
 const BAND: f64 = 3.0;
+
+/// Edge of the bands on the page, or a curve between edges.
+struct Edge {
+    name: &'static str,
+    note: &'static str,
+    /// Value at an output time, SI; NaN where there is none.
+    of: fn(&CurveBands, usize) -> f64,
+}
+
+const MOST_PRODUCTS: &str =
+    "Range of 99.73 % of all products, if they are normally distributed: from first and second derivatives.";
+const WORST_CASE: &str = "Extreme over all products within the tolerances.";
+/// Curves of a band, those of the standard deviation first.
+const EDGES: [Edge; 5] = [
+    Edge { name: "mean - 3 sigma", note: MOST_PRODUCTS, of: |c, k| deviated(c, k, -BAND) },
+    Edge { name: "mean + 3 sigma", note: MOST_PRODUCTS, of: |c, k| deviated(c, k, BAND) },
+    Edge { name: "worst-case minimum", note: WORST_CASE, of: |c, k| c.bands[k].worst[0] },
+    Edge { name: "worst-case maximum", note: WORST_CASE, of: |c, k| c.bands[k].worst[1] },
+    Edge {
+        name: "loaded",
+        note: "Every pin with play is on the side to which the loads press it, to first order.",
+        of: |c, k| c.bands[k].loaded.unwrap_or(f64::NAN),
+    },
+];
+
+/// Mean plus a multiple of the standard deviation.
+fn deviated(curve: &CurveBands, k: usize, by: f64) -> f64 {
+    let [mean, sigma] = curve.moments(k);
+    mean + by * sigma
+}
+
 /// Contributions below this fraction are not listed.
 const SLIGHT: f64 = 1e-3;
 /// Bands below this fraction of the curve's largest value are round-off.
@@ -577,10 +608,8 @@ impl ToleranceInputs<'_> {
         let of_limit = self.found.limits.iter().map(|l| l.spread).chain(0..self.found.metrics.len());
         let first = of_limit.map(|s| &self.found.metrics[s]).find(|m| m.motion == motion);
         page.open_on(first.map(|m| &self.model().metrics[m.metric]), outputs);
-        let designs: Vec<Design> = [(-BAND, "mean - 3 sigma"), (BAND, "mean + 3 sigma")]
-            .map(|(by, name)| self.band(motion, by, name, &page, outputs))
-            .into_iter()
-            .collect();
+        let designs: Vec<Design> =
+            EDGES.iter().map(|edge| self.band(motion, edge, &page, outputs)).collect();
         page.designs.extend(designs.into_iter().filter(|d| d.quantities.iter().any(Option::is_some)));
         page.covariance_root = Some(self.covariance_root());
         let tables = facts.tables().into_iter().chain(self.histograms(motion));
@@ -602,7 +631,7 @@ impl ToleranceInputs<'_> {
     }
 
     /// Edge of the bands of a motion, as the curves of a design.
-    fn band(&self, motion: usize, by: f64, name: &str, page: &Payload, outputs: &[Output]) -> Design {
+    fn band(&self, motion: usize, edge: &Edge, page: &Payload, outputs: &[Output]) -> Design {
         let mut quantities: Vec<Option<DesignCurves>> = page.quantities.iter().map(|_| None).collect();
         for curve in self.found.curves.iter().filter(|c| c.motion == motion) {
             let source = OutputSource::Measure(curve.measure);
@@ -616,19 +645,21 @@ impl ToleranceInputs<'_> {
                 let off = |k: &usize| (curve.times[*k] as f32 - t).abs();
                 (0..curve.times.len()).min_by(|a, b| off(a).total_cmp(&off(b)))
             };
-            let edge = |t: &f32| {
-                let [mean, sigma] = nearest(*t).map_or([f64::NAN; 2], |k| curve.moments(k));
-                self.units().from_si(dimension, mean + by * sigma)
+            let value = |t: &f32| {
+                let si = nearest(*t).map_or(f64::NAN, |k| (edge.of)(curve, k));
+                self.units().from_si(dimension, si)
             };
-            let value: Curve = page.times.values().iter().map(edge).collect();
+            let value: Curve = page.times.values().iter().map(value).collect();
+            if value.values().iter().all(|x| x.is_nan()) {
+                continue;
+            }
             quantities[q] = Some(DesignCurves { value, rate: Curve::default(), accel: Curve::default() });
         }
         Design {
-            name: name.into(),
+            name: edge.name.into(),
             kind: DesignKind::Band,
             change: vec![0.0; page.variables.len()],
-            note: "Range of 99.73 % of all products, if they are normally distributed: from first and second derivatives."
-                .into(),
+            note: edge.note.into(),
             poses: Vec::new(),
             skeletons: Vec::new(),
             loads: Vec::new(),

@@ -211,8 +211,9 @@ function addPredictions(state: State, { quantity, order, over }: Subject, conten
 }
 
 /**
- * Edges of the tolerance band of a quantity, where the study has one: over time of the study itself. Over another
- * quantity, which scatters as well, the band is that of the values at a fixed abscissa, to first order.
+ * Edges of the tolerance band of a quantity, where the study has one: over time of the study itself, by standard
+ * deviations (dotted) and of the worst case (dash-dotted), with the curve of pins with play under load (solid). Over
+ * another quantity, which scatters as well, the band is that of the values at a fixed abscissa, to first order.
  */
 function addBands(state: State, subject: Subject, content: Content, scale: number): void {
   const { report } = state
@@ -226,14 +227,14 @@ function addBands(state: State, subject: Subject, content: Content, scale: numbe
     return
   }
   const x = over === undefined ? undefined : report.quantities[over].curves[0]
-  bands.forEach(({ name }, k) =>
+  edges.forEach((edge, k) =>
     content.lines.push({
-      label: name,
+      label: bands[k].name,
       color: css('--former'),
-      curve: quiet(edges[k], scale),
+      curve: quiet(edge, scale),
       over: x,
       width: 1.3,
-      dash: DOTTED,
+      dash: k < 2 ? DOTTED : k < 4 ? DASH_DOTTED : undefined,
     }),
   )
   if (over !== undefined)

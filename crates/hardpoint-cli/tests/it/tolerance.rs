@@ -27,6 +27,8 @@ fn the_tolerance_study_of_the_strut_is_printed_and_written() {
         "2000 designs, seed 1",
         "Contributions to toe_in_bump (bump)",
         "the linear result is accurate",
+        "report: out/report-bump.html",
+        "out/bands.csv",
         "loosest",
     ] {
         assert!(text.contains(words), "{words}: {text}");
@@ -66,8 +68,40 @@ fn the_tolerance_study_of_the_strut_is_printed_and_written() {
     let toe = page["quantities"].as_array().unwrap().iter().position(|q| q["name"] == "toe").unwrap();
     assert_eq!(page["first"], toe);
     let designs = page["designs"].as_array().unwrap();
-    assert_eq!(designs.len(), 2);
+    let names: Vec<&str> = designs.iter().map(|d| d["name"].as_str().unwrap()).collect();
+    // Without play there is no curve of loaded pins.
+    assert_eq!(names, ["mean - 3 sigma", "mean + 3 sigma", "worst-case minimum", "worst-case maximum"]);
     assert!(designs.iter().all(|d| !d["quantities"][toe].is_null()));
+}
+
+/// Slider-crank with play in the pin of its crank, and a force on its ram.
+const LOOSE_CRANK: &str = r#"
+name = "slider-crank with play"
+units = { length = "mm", angle = "rad" }
+planar = "xy"
+hardpoints = { O = [0, 0], A = [80, 60], B = [370, 0] }
+bodies = { crank = {}, rod = {}, ram = {} }
+joints.main = { type = "revolute", bodies = ["ground", "crank"], at = "O" }
+joints.pin = { type = "revolute", bodies = ["crank", "rod"], at = "A" }
+joints.wrist = { type = "revolute", bodies = ["rod", "ram"], at = "B" }
+joints.slide = { type = "translational", bodies = ["ground", "ram"], at = "B", axis = "x" }
+drivers.motor = { joint = "main", law = "t" }
+measures.stroke = { type = "coordinate", joint = "slide" }
+metrics.most = { of = "stroke", take = "max" }
+design.pin_play = { play = "pin", tolerance = 0.02 }
+forces.push = { type = "force", at = { body = "ram", at = "B" }, force = 100, along = "-x" }
+time = { end = 1, steps = 10 }
+"#;
+
+#[test]
+fn the_page_of_play_under_load_has_the_curve_of_loaded_pins() {
+    let (bench, model) = (Bench::with(&[]), "play.toml");
+    bench.put(model, LOOSE_CRANK);
+    let output = bench.run(&["tolerance", model, "--samples", "0", "-o", "out"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let page = bench.page("out/report.html");
+    let edges = page["designs"].as_array().unwrap();
+    assert_eq!(edges.last().unwrap()["name"], "loaded");
 }
 
 #[test]

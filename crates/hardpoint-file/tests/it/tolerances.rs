@@ -675,6 +675,20 @@ design.wrist_pin = { play = "wrist_pin", tolerance = 0.04 }
 time = { end = 1.0, steps = 30 }
 "#;
 
+/// Places in holes of a radius, evenly distributed.
+fn places_in_holes() -> impl FnMut(f64) -> [f64; 2] {
+    let mut random = 1_u64;
+    let mut draw = move || {
+        // A plain generator: places in the holes need no more.
+        random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (random >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    move |c| {
+        let (turn, far) = (std::f64::consts::TAU * draw(), c * draw().sqrt());
+        [far * turn.cos(), far * turn.sin()]
+    }
+}
+
 /// An offset e of any pin moves the slider by e along the rod over the cosine of the rod's angle: the band is the sum
 /// of all plays over that, and holds whatever places the pins have in their holes.
 #[test]
@@ -693,12 +707,7 @@ fn the_play_of_a_slider_crank_has_its_closed_form() {
     let b = 0.371_808_950_6_f64;
     let rod = ((b - 0.08).powi(2) + 0.06 * 0.06).sqrt();
     let curve = &found.curves[0];
-    let mut random = 1_u64;
-    let mut draw = || {
-        // A plain generator: places in the holes need no more.
-        random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (random >> 11) as f64 / (1_u64 << 53) as f64
-    };
+    let mut in_hole = places_in_holes();
     for (t, band) in curve.times.iter().zip(&curve.bands) {
         let angle = 0.6_f64.atan2(0.8) + (300.0 * t).to_radians();
         let (sin, cos) = angle.sin_cos();
@@ -714,11 +723,7 @@ fn the_play_of_a_slider_crank_has_its_closed_form() {
         let second = plays.iter().sum::<f64>().powi(2) / rod / tilt.cos().powi(3);
         let mut widest = 0.0_f64;
         for _ in 0..100_000 / curve.times.len() {
-            let offset = |c: f64| {
-                let (turn, far) = (std::f64::consts::TAU * draw(), c * draw().sqrt());
-                [far * turn.cos(), far * turn.sin()]
-            };
-            let [o, a, w] = plays.map(offset);
+            let [o, a, w] = plays.map(&mut in_hole);
             let [x, y] = [0, 1].map(|k| o[k] + a[k] + w[k] + r * [cos, sin][k]);
             let place = x + (rod * rod - y * y).sqrt();
             widest = widest.max((place - band.nominal).abs());
@@ -731,7 +736,8 @@ fn the_play_of_a_slider_crank_has_its_closed_form() {
     }
 }
 
-/// The follower of a four-bar turns by the offset along the coupler over the arm `b sin(mu)`, for each of four pins.
+/// The follower of a four-bar turns by the offset along the coupler over the arm `b sin(mu)`, for each of four pins. The
+/// band holds whatever places the pins have in their holes.
 #[test]
 fn the_play_of_a_four_bar_has_its_closed_form() {
     let text = r#"
@@ -759,10 +765,37 @@ time = { end = 1.0, steps = 20 }
     let found = examined(&file, |asked| asked.samples = 0);
     let curve = found.curves.iter().find(|c| file.model.measures[c.measure].name == "output").unwrap();
     let angle = found.curves.iter().find(|c| file.model.measures[c.measure].name == "mu").unwrap();
-    for (band, mu) in curve.bands.iter().zip(&angle.bands) {
+    let (crank, coupler, rocker, play) = (100.0_f64, 300.0_f64.hypot(150.0), 250.0_f64, 0.01_f64);
+    let mut in_hole = places_in_holes();
+    for ((t, band), mu) in curve.times.iter().zip(&curve.bands).zip(&angle.bands) {
         let half = 0.5 * (band.first[1] - band.first[0]);
-        let expected = 4.0 * 0.01 / (250.0 * mu.nominal.sin());
+        let sin = mu.nominal.sin();
+        let expected = 4.0 * play / (rocker * sin);
         assert!((half - expected).abs() < 1e-9 * expected, "{half} instead of {expected}");
+        // Angle of the rocker where the pins have offsets of this sum, from its position in the design configuration.
+        let quarter = std::f64::consts::FRAC_PI_2;
+        let output = |[x, y]: [f64; 2]| {
+            let (turn_sin, turn_cos) = (quarter + 2.0 * t).sin_cos();
+            let [dx, dy] = [crank * turn_cos + x - 300.0, crank * turn_sin + y];
+            let far = dx.hypot(dy);
+            let cos = (rocker * rocker + far * far - coupler * coupler) / (2.0 * rocker * far);
+            dy.atan2(dx).rem_euclid(std::f64::consts::TAU) - cos.acos() - quarter
+        };
+        assert!((output([0.0; 2]) - band.nominal).abs() < 1e-9, "t = {t}: {}", band.nominal);
+        // e^2 times the largest second derivative by an offset e: twice the error beyond first order.
+        let second =
+            (1.0 + 2.0 / sin + (1.0 + coupler / rocker) / (sin * sin)) * (4.0 * play).powi(2) / (rocker * coupler * sin);
+        let mut widest = 0.0_f64;
+        for _ in 0..100_000 / curve.times.len() {
+            let offsets = [play; 4].map(&mut in_hole);
+            let value = output([0, 1].map(|k| offsets.iter().map(|o| o[k]).sum()));
+            widest = widest.max((value - band.nominal).abs());
+            assert!((value - band.nominal).abs() <= half + second, "t = {t}");
+            let [least, greatest] = band.worst;
+            assert!(least <= value && value <= greatest, "t = {t}: {value} beyond {least} to {greatest}");
+        }
+        assert!(band.solved && (band.worst[1] - band.worst[0] - 2.0 * half).abs() < second, "t = {t}");
+        assert!(widest > 0.65 * half, "t = {t}: the samples fill the band");
     }
     // In a joint without a pin there is no play.
     let message = parse(&text.replace("play = \"D\"", "play = \"E\""), "t.toml").unwrap_err().to_string();
