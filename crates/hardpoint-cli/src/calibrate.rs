@@ -80,18 +80,17 @@ fn calibrate_in(session: &Session, options: &Calibrate) -> Result<Outcome, Outco
             }
         }
     }
-    let mut written = None;
+    let unwritten = facts.files.len();
     if let Some(mut folder) = folder {
         let results = Results { calibrated, options };
         results.write(&mut folder, &mut facts).map_err(|e| session.not_written(&e))?;
-        written = Some(folder.path_of("summary.json"));
         folder.commit(&FILES).map_err(|e| session.not_written(&e))?;
     }
     if session.is_json() {
         session.print_json(&facts);
     } else {
         text::print(&text::study(facts.rows(), facts.seconds, &facts.tables()));
-        text::print(&written.map_or(String::new(), |path| format!("\nwritten: {}\n", path.display())));
+        text::print(&text::written(&facts.files[unwritten..]));
         text::print(
             &saved.ok().flatten().map_or(String::new(), |path| format!("saved: {}\n", path.display())),
         );

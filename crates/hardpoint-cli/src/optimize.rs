@@ -72,10 +72,9 @@ pub fn optimize_in(session: &Session, options: &Optimize) -> Result<Outcome, Out
             }
         }
     }
-    let mut written = None;
+    let unwritten = search.facts.files.len();
     if let Some(mut folder) = folder.filter(|_| search.best().is_some()) {
         let result = search.write(&mut folder);
-        written = Some(folder.path_of("summary.json"));
         result.and_then(|()| folder.commit(&[])).map_err(|e| session.not_written(&e))?;
     }
     let facts = &search.facts;
@@ -83,8 +82,7 @@ pub fn optimize_in(session: &Session, options: &Optimize) -> Result<Outcome, Out
         session.print_json(facts);
     } else {
         text::print(&text::study(facts.rows(), facts.seconds, &facts.tables()));
-        let written = written.map_or(String::new(), |path| format!("\nwritten: {}\n", path.display()));
-        text::print(&written);
+        text::print(&text::written(&facts.files[unwritten..]));
         session.tell(&file, &facts.diagnostics);
         text::print(
             &saved.ok().flatten().map_or(String::new(), |path| format!("saved: {}\n", path.display())),

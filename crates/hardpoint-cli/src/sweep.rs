@@ -37,7 +37,7 @@ pub fn run(options: &Sweep) -> Outcome {
 pub fn sweep_in(session: &Session, options: &Sweep) -> Result<Outcome, Outcome> {
     let file = session.read(&options.common.model)?;
     let finish = |results: &Results<'_>, folder| results.finish(session, folder);
-    let (mut facts, written) = swept(session, &file, options, finish)?;
+    let (mut facts, ()) = swept(session, &file, options, finish)?;
     facts.seconds = session.seconds();
     if session.is_json() {
         session.print_json(&facts);
@@ -47,7 +47,7 @@ pub fn sweep_in(session: &Session, options: &Sweep) -> Result<Outcome, Outcome> 
             text::bold(&file.model.name),
             text::study(facts.rows(), facts.seconds, &facts.tables())
         ));
-        text::print(&written.map_or(String::new(), |path| format!("\nwritten: {path}\n")));
+        text::print(&text::written(&facts.files));
     }
     Ok(match facts.status {
         "interrupted" => Outcome::Interrupted,
@@ -207,12 +207,12 @@ struct Results<'a> {
 }
 
 impl Results<'_> {
-    /// Writes tables, a page for each motion, and the summary last; reports the last file.
+    /// Writes tables, a page for each motion, and the summary last.
     fn finish(
         &self,
         session: &Session,
         folder: Option<Folder>,
-    ) -> Result<(SweepFacts, Option<String>), Outcome> {
+    ) -> Result<(SweepFacts, ()), Outcome> {
         let mut files = Vec::new();
         let (folder, tally) = match folder {
             None => (None, self.tally(session)?),
@@ -231,16 +231,15 @@ impl Results<'_> {
             };
         }
         facts.files = files;
-        let Some(mut folder) = folder else { return Ok((facts, None)) };
+        let Some(mut folder) = folder else { return Ok((facts, ())) };
         let pages = Pages { swept: self.swept, facts: &facts, plot: &plot }.write_pages(&mut folder);
         facts.files.extend(pages.map_err(|e| session.not_written(&e))?);
-        let summary = folder.path_of("summary.json").display().to_string();
-        facts.files.push(summary.clone());
+        facts.files.push(folder.path_of("summary.json").display().to_string());
         facts.seconds = session.seconds();
         let json = json_text(&facts);
         let written = folder.write("summary.json", |out| out.write_all(json.as_bytes()));
         written.and_then(|()| folder.commit(&FILES)).map_err(|e| session.not_written(&e))?;
-        Ok((facts, Some(summary)))
+        Ok((facts, ()))
     }
 
     /// Facts of all blocks.

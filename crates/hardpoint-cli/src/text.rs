@@ -140,6 +140,14 @@ pub fn study(mut rows: Vec<(&str, String)>, duration: f64, tables: &[Table]) -> 
     format!("\n{}{}", pairs(&rows), tables.iter().map(section).collect::<String>())
 }
 
+/// Files that a study wrote, after an empty line: a line for each page, as of a run, then one for all others.
+pub fn written(files: &[String]) -> String {
+    let (pages, others): (Vec<&String>, Vec<&String>) = files.iter().partition(|file| file.ends_with(".html"));
+    let pages: String = pages.into_iter().map(|page| format!("report: {page}\n")).collect();
+    let others: Vec<&str> = others.into_iter().map(String::as_str).collect();
+    if files.is_empty() { pages } else { format!("\n{pages}written: {}\n", others.join(", ")) }
+}
+
 /// Notes, one per line, after an empty line.
 pub fn notes(summary: &Summary) -> String {
     let ahead = summary.margin.as_ref().and_then(MarginFact::ahead);

@@ -38,10 +38,8 @@ pub fn tolerance_in(session: &Session, options: &Tolerance) -> Result<Outcome, O
     let found = examine(session, &file, &motions, &numbers, &request, options.threads)?;
     let studied = ToleranceInputs { file: &file, numbers: &numbers, asked: &request.settings, found: &found };
     let mut results = Results::of(session, studied, &motions);
-    let mut written = None;
     if let Some(mut folder) = folder {
         results.write(&mut folder).map_err(|e| session.not_written(&e))?;
-        written = Some(folder.path_of("summary.json"));
         folder.commit(&FILES).map_err(|e| session.not_written(&e))?;
     }
     let facts = &results.facts;
@@ -53,7 +51,7 @@ pub fn tolerance_in(session: &Session, options: &Tolerance) -> Result<Outcome, O
             text::bold(&file.model.name),
             text::study(facts.rows(), facts.seconds, &facts.tables())
         ));
-        text::print(&written.map_or(String::new(), |path| format!("\nwritten: {}\n", path.display())));
+        text::print(&text::written(&facts.files));
     }
     Ok(if found.interrupted { Outcome::Interrupted } else { Outcome::Done })
 }

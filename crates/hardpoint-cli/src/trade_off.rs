@@ -84,10 +84,9 @@ fn trade_off_in(session: &Session, options: &TradeOff) -> Result<Outcome, Outcom
         facts.not_saved(&format!("the front has {points} points, numbered from 0"));
     }
     let mut results = Results { inputs, motions: &motions, chosen, facts };
-    let mut written = None;
+    let unwritten = results.facts.files.len();
     if let Some(mut folder) = folder.filter(|_| !found.points.is_empty()) {
         results.write(&mut folder).map_err(|e| session.not_written(&e))?;
-        written = Some(folder.path_of("summary.json"));
         folder.commit(&FILES).map_err(|e| session.not_written(&e))?;
     }
     let facts = &results.facts;
@@ -96,7 +95,7 @@ fn trade_off_in(session: &Session, options: &TradeOff) -> Result<Outcome, Outcom
     } else {
         let text = text::study(facts.rows(), facts.seconds, &facts.tables());
         text::print(&format!("{}\n{text}", text::bold(&file.model.name)));
-        text::print(&written.map_or(String::new(), |path| format!("\nwritten: {}\n", path.display())));
+        text::print(&text::written(&facts.files[unwritten..]));
         session.tell(&file, &facts.diagnostics);
         let saved = saved.as_ref().ok().and_then(|to| *to);
         text::print(&saved.map_or(String::new(), |path| format!("saved: {}\n", path.display())));
