@@ -6,9 +6,9 @@
 
 Both sides have the targets, variables, bounds and first start of the model file, and the same number of starts: the
 nominal design and points of a Sobol sequence within the bounds. A hit ends within a thousandth of the best error that
-either side finds. scipy's trust region has tolerances of 1e-12 or less and at most 500 evaluations per start; its designs
-are closed forms of the four-bar in NumPy, with derivatives by finite differences. hardpoint has its default settings, on
-one thread. CPU times are those of this process, and of the command with reading the file.
+either side finds. scipy's trust region has tolerances of 1e-12 or less and at most 500 evaluations per start; its
+designs are closed forms of the four-bar in NumPy, with derivatives by finite differences. hardpoint has its default
+settings, on one thread. CPU times are those of this process, and of the command with reading the file.
 """
 
 import argparse
@@ -32,7 +32,7 @@ HIT = 1.001
 
 
 def coupler_point(ground, crank, coupler, rocker, along, across, x, y, turn, angle):
-    """Coupler point of a four-bar on the line of the ground link, turned and moved; further off where it does not close."""
+    """Coupler point of a four-bar, turned and moved with its ground link; further off where the loop does not close."""
     pin = crank * np.array([np.cos(angle), np.sin(angle)])
     dx, dy = ground - pin[0], -pin[1]
     far = np.hypot(dx, dy)
@@ -97,13 +97,16 @@ def main():
     parser.add_argument("--starts", type=int, default=32)
     options = parser.parse_args()
     for name in PROBLEMS:
-        results = {"scipy": of_scipy(name, options.starts), "hardpoint": of_hardpoint(options.command, name, options.starts)}
+        results = {
+            "scipy": of_scipy(name, options.starts),
+            "hardpoint": of_hardpoint(options.command, name, options.starts),
+        }
         best = min(min(errors) for errors, _ in results.values())
         print(f"{name}: best error {best:.6g}")
         for side, (errors, seconds) in results.items():
             hits = sum(error <= HIT * best for error in errors)
             per_hit = f"{1000 * seconds / hits:.3g} ms" if hits else "no hit"
-            print(f"  {side}: {hits} hits of {options.starts} starts, {seconds:.3f} s of CPU, {per_hit} per hit", flush=True)
+            print(f"  {side}: {hits} hits of {len(errors)} starts, {seconds:.3f} s of CPU, {per_hit} per hit", flush=True)
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ use serde::Serialize;
 use crate::figures::{count, number, rounded, seconds, some_of, symbol, unit, variable_unit, with_unit};
 use crate::page::{Curve, Fact, Payload, SweepAxis, SweepPlot, Table};
 use crate::record::{Column, record, write_rows};
-use crate::study::{Evaluations, MovedHardpoint};
+use crate::study::{Evaluations, MovedHardpoint, VALUES, nominal_number, range, signed, value_of};
 
 /// Residuals of more standard deviations than this are reported; about three of a thousand normal residuals are.
 const FAR: f64 = 3.0;
@@ -169,6 +169,10 @@ record! {
             FittedParameter::Variable(v) => of.model().nominal_value(v),
             FittedParameter::Driver(_) | FittedParameter::Output(_) => 0.0,
         };
+        let nominal = match parameter {
+            FittedParameter::Variable(v) => nominal_number(of.file, &of.model().variables[v.0]),
+            FittedParameter::Driver(_) | FittedParameter::Output(_) => None,
+        };
         let by = of.found.estimates[k];
         let prior = certainty.prior_sigmas[k];
         let ratio = certainty.sigmas[k].zip(prior).map(|(s, p)| s / p);
@@ -190,6 +194,10 @@ record! {
     start: f64 = shown(start);
     /// Fitted value: the value of a parameter, the change of all other variables.
     end: f64 = shown(start + by);
+    /// Nominal value of the number that the variable changes; `null` if it changes none or several.
+    nominal: Option<f64> = nominal.map(shown);
+    /// Bounds of the change that the fit keeps; `null` without bounds.
+    bounds: Option<[f64; 2]> = of.found.bounds[k].map(|bounds| bounds.map(shown));
     /// Standard deviation; `null` if the readings and priors do not determine it, it is at a bound, or the search got
     /// stuck or diverged.
     sigma: Option<f64> = certainty.sigmas[k].map(shown);
@@ -721,18 +729,30 @@ impl CalibrateFacts {
 }
 
 impl CalibratedVariable {
+    /// Fitted change.
+    fn change(&self) -> f64 {
+        self.end - self.start
+    }
+
+    /// Value after a change, or the change itself if there is no nominal value.
+    fn value(&self, change: f64) -> f64 {
+        value_of(self.nominal, change, self.bounds.unwrap_or_default())
+    }
+
     /// Table of the variables before and after the readings, with their sources.
     fn prior_table(variables: &[Self]) -> Option<Table> {
         let columns: [Column<'_, &Self>; 6] = [
             ("variable", &|v| v.name.clone()),
             ("prior", &|v| match (v.prior_mean, v.prior_sigma) {
-                (Some(mean), Some(sigma)) => format!("{} ± {}", number(mean), with_unit(sigma, &v.unit)),
+                (Some(mean), Some(sigma)) => {
+                    format!("{} ± {}", number(v.value(mean - v.start)), with_unit(sigma, &v.unit))
+                }
                 (None, Some(sigma)) => format!("± {}", with_unit(sigma, &v.unit)),
                 (_, None) => "none".into(),
             }),
             ("posterior", &|v| match v.sigma {
-                Some(sigma) => format!("{} ± {}", number(v.end), with_unit(sigma, &v.unit)),
-                None => with_unit(v.end, &v.unit),
+                Some(sigma) => format!("{} ± {}", number(v.value(v.change())), with_unit(sigma, &v.unit)),
+                None => with_unit(v.value(v.change()), &v.unit),
             }),
             ("ratio", &|v| {
                 let ratio = v.sigma.zip(v.prior_sigma).map(|(s, p)| s / p);
@@ -747,19 +767,21 @@ impl CalibratedVariable {
 
     /// Table of the nominal and the fitted design.
     fn design_table(variables: &[Self]) -> Option<Table> {
-        let columns: [Column<'_, &Self>; 5] = [
+        let columns: [Column<'_, &Self>; 7] = [
             ("variable", &|v| v.name.clone()),
-            ("nominal", &|v| with_unit(v.start, &v.unit)),
-            ("fitted", &|v| with_unit(v.end, &v.unit)),
+            ("nominal", &|v| with_unit(v.value(0.0), &v.unit)),
+            ("fitted", &|v| with_unit(v.value(v.change()), &v.unit)),
             ("standard deviation", &|v| {
                 v.sigma.map_or(v.source.into(), |s| format!("± {}", with_unit(s, &v.unit)))
             }),
+            ("change", &|v| signed(v.change(), &v.unit)),
             ("change / sigma", &|v| {
                 let sigma = v.sigma.filter(|s| *s > 0.0);
-                sigma.map_or(String::new(), |s| rounded((v.end - v.start) / s, 3))
+                sigma.map_or(String::new(), |s| rounded(v.change() / s, 3))
             }),
+            ("bounds", &|v| v.bounds.map_or(String::new(), |b| range(b.map(|b| v.value(b))))),
         ];
-        Table::of("Design", "", &columns, variables).if_any()
+        Table::of("Design", VALUES, &columns, variables).if_any().map(Table::without_empty_columns)
     }
 }
 
@@ -849,11 +871,6 @@ fn correlation_table(pairs: &[(String, String, f64)]) -> Option<Table> {
 fn listed(values: &[(String, f64, String)], shown: fn(f64, &str) -> String) -> String {
     let one = |(name, x, unit): &(String, f64, String)| format!("{name} {}", shown(*x, unit));
     values.iter().map(one).collect::<Vec<_>>().join(", ")
-}
-
-fn signed(by: f64, unit: &str) -> String {
-    let sign = if by < 0.0 { "" } else { "+" };
-    format!("{sign}{}", with_unit(by, unit))
 }
 
 fn together(covariance: &[Vec<f64>], variables: &[CalibratedVariable]) -> Vec<(String, String, f64)> {

@@ -3,7 +3,7 @@
 use hardpoint::joint::Quantity;
 use hardpoint::measure::Output;
 use hardpoint::model::{
-    Change, DesignVariable, Dimension, LimitTarget, Model, OptimizationSettings, StartPlacement, VariableId,
+    Dimension, LimitTarget, Model, OptimizationSettings, StartPlacement, VariableId,
 };
 use hardpoint::space::Vec3;
 use hardpoint_file::{Diagnostic, ModelFile, Units};
@@ -17,7 +17,9 @@ use serde::Serialize;
 use crate::figures::{error, number, some_of, symbol, unit, variable_unit, with_unit};
 use crate::page::{Payload, Table};
 use crate::record::{Column, record};
-use crate::study::{BeforeAfter, Evaluations, MovedHardpoint, case_name, titled};
+use crate::study::{
+    BeforeAfter, Evaluations, MovedHardpoint, case_name, nominal_number, range, signed, titled, value_of, without_round_off,
+};
 
 /// Multiplier, as a fraction of the objective per range of a variable, below which an active constraint is not
 /// reported.
@@ -258,7 +260,7 @@ record! {
     /// Bounds of the change.
     bounds: [f64; 2] = bounds.map(shown);
     /// Nominal value of the number that the variable changes; `null` if it changes more than one number.
-    nominal: Option<f64> = nominal(file, variable).map(shown);
+    nominal: Option<f64> = nominal_number(file, variable).map(shown);
     /// Active bound: `lower` or `upper`.
     binds: Option<&'static str> = binds.map(|b| b.0);
     /// Decrease of the objective per unit by which the active bound is relaxed.
@@ -663,9 +665,7 @@ impl OptimizeFacts {
                 ("nominal", &|v| with_unit(v.value(0.0), &v.unit)),
                 ("optimised", &|v| with_unit(v.value(v.end), &v.unit)),
                 ("change", &|v| signed(v.end, &v.unit)),
-                ("bounds", &|v| {
-                    format!("{} to {}", number(v.value(v.bounds[0])), number(v.value(v.bounds[1])))
-                }),
+                ("bounds", &|v| range(v.bounds.map(|b| v.value(b)))),
                 ("work", &|v| work(v)),
                 ("active bound", &|v| binds(v.binds, v.worth, &v.unit)),
             ],
@@ -921,52 +921,15 @@ const NAMED_CHANGES: usize = 3;
 /// A limit that is exceeded by less than this fraction of its value is reported as satisfied.
 const MISSED: f64 = 1e-7;
 
-/// A change below this fraction of the bounds is round-off.
-const ROUND_OFF: f64 = 1e-15;
-
-fn without_round_off(x: f64, [low, high]: [f64; 2]) -> f64 {
-    if x.abs() <= ROUND_OFF * (high - low) { 0.0 } else { x }
-}
-
-/// Nominal value, SI, of the number in the file that a variable changes, if there is exactly one.
-fn nominal(file: &ModelFile, variable: &DesignVariable) -> Option<f64> {
-    let model = &file.model;
-    let number = |change: &Change| match change {
-        Change::Move(m) => {
-            let along = (0..3).find(|axis| m.velocity[*axis] == 1.0 && m.velocity.norm() == 1.0);
-            along.map(|axis| model.hardpoints[m.hardpoint.0].position[axis])
-        }
-        Change::Length(c) => model.joints[c.joint.0].length.filter(|_| c.rate == 1.0),
-        Change::Parameter(c) => Some(model.parameters[c.parameter.0].value).filter(|_| c.rate == 1.0),
-        Change::Marker(_) | Change::Law(_) | Change::Field(_) => None,
-    };
-    let mut parameters = variable.changes.iter().filter(|change| matches!(change, Change::Parameter(_)));
-    if let Some(value) = parameters.find_map(number) {
-        return Some(value);
-    }
-    // Mirrored changes are not numbers of the file.
-    let is_image = |change: &Change| matches!(change, Change::Move(m) if file.is_image(&model.hardpoints[m.hardpoint.0].name));
-    let mut own = variable.changes.iter().filter(|change| !is_image(change));
-    match (own.next(), own.next()) {
-        (Some(only), None) => number(only),
-        (None, _) | (Some(_), Some(_)) => None,
-    }
-}
-
 /// True if the best search ended where all goals vanish.
 fn best_is_met(found: &Optimization) -> bool {
     found.best.is_some_and(|k| found.searches[k].optimality.met)
 }
 
-/// Formatted change with its sign.
-fn signed(by: f64, unit: &str) -> String {
-    format!("{}{}", if by > 0.0 { "+" } else { "" }, with_unit(by, unit))
-}
-
 impl SearchedVariable {
     /// Value after a change, or the change itself if there is no nominal value.
     fn value(&self, change: f64) -> f64 {
-        self.nominal.map_or(change, |nominal| without_round_off(nominal + change, self.bounds))
+        value_of(self.nominal, change, self.bounds)
     }
 }
 

@@ -1,13 +1,13 @@
-//! Facts that several studies have: costs, values before and after, moved hardpoints, failed designs.
+//! Facts that several studies have: costs, values before and after, values of variables, moved hardpoints, failed designs.
 
 use hardpoint::joint::Quantity;
 use hardpoint::measure::Output;
-use hardpoint::model::{Metric, Model, OutputSource};
-use hardpoint_file::Units;
+use hardpoint::model::{Change, DesignVariable, Metric, Model, OutputSource};
+use hardpoint_file::{ModelFile, Units};
 use hardpoint_study::StudyCost;
 use serde::Serialize;
 
-use crate::figures::{number, rounded};
+use crate::figures::{number, rounded, with_unit};
 use crate::page::{Fact, Payload, StudyTables, Table};
 use crate::record::{Column, record};
 
@@ -144,6 +144,58 @@ pub fn case_name(model: &Model, motion: usize) -> Option<String> {
 /// Name with its case, if it has one.
 pub(crate) fn titled(name: &str, case: &Option<String>) -> String {
     case.as_ref().map_or(name.to_owned(), |case| format!("{name} ({case})"))
+}
+
+/// A change below this fraction of the bounds is round-off.
+const ROUND_OFF: f64 = 1e-15;
+
+/// Number without round-off next to its bounds.
+pub(crate) fn without_round_off(x: f64, [low, high]: [f64; 2]) -> f64 {
+    if x.abs() <= ROUND_OFF * (high - low) { 0.0 } else { x }
+}
+
+/// Nominal value, SI, of the number in the file that a variable changes, if there is exactly one.
+pub(crate) fn nominal_number(file: &ModelFile, variable: &DesignVariable) -> Option<f64> {
+    let model = &file.model;
+    let number = |change: &Change| match change {
+        Change::Move(m) => {
+            let along = (0..3).find(|axis| m.velocity[*axis] == 1.0 && m.velocity.norm() == 1.0);
+            along.map(|axis| model.hardpoints[m.hardpoint.0].position[axis])
+        }
+        Change::Length(c) => model.joints[c.joint.0].length.filter(|_| c.rate == 1.0),
+        Change::Parameter(c) => Some(model.parameters[c.parameter.0].value).filter(|_| c.rate == 1.0),
+        Change::Marker(_) | Change::Law(_) | Change::Field(_) => None,
+    };
+    let mut parameters = variable.changes.iter().filter(|change| matches!(change, Change::Parameter(_)));
+    if let Some(value) = parameters.find_map(number) {
+        return Some(value);
+    }
+    // Mirrored changes are not numbers of the file.
+    let is_image = |change: &Change| matches!(change, Change::Move(m) if file.is_image(&model.hardpoints[m.hardpoint.0].name));
+    let mut own = variable.changes.iter().filter(|change| !is_image(change));
+    match (own.next(), own.next()) {
+        (Some(only), None) => number(only),
+        (None, _) | (Some(_), Some(_)) => None,
+    }
+}
+
+/// Value of a variable after a change, or the change itself if it changes no single number.
+pub(crate) fn value_of(nominal: Option<f64>, change: f64, bounds: [f64; 2]) -> f64 {
+    nominal.map_or(change, |nominal| without_round_off(nominal + change, bounds))
+}
+
+/// Formatted change with its sign.
+pub(crate) fn signed(by: f64, unit: &str) -> String {
+    format!("{}{}", if by > 0.0 { "+" } else { "" }, with_unit(by, unit))
+}
+
+/// Note below tables with values of variables.
+pub(crate) const VALUES: &str =
+    "Values of the number that a variable changes; where it changes several, changes of the design configuration.";
+
+/// Formatted bounds.
+pub(crate) fn range([low, high]: [f64; 2]) -> String {
+    format!("{} to {}", number(low), number(high))
 }
 
 /// Bar of a table as text, with a length proportional to a fraction.

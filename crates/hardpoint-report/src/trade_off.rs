@@ -13,7 +13,9 @@ use crate::figures::{count, error, number, some_of, unit, variable_unit, with_un
 use crate::optimize::unit_in_si;
 use crate::page::{Payload, SweepAxis, SweepPlot, Table};
 use crate::record::{Column, record, write_rows};
-use crate::study::{Evaluations, case_name, titled, with_brackets};
+use crate::study::{
+    Evaluations, VALUES, case_name, nominal_number, range, signed, titled, value_of, with_brackets,
+};
 
 /// A finished trade-off, with its inputs.
 #[derive(Clone, Copy)]
@@ -153,6 +155,21 @@ record! {
     nominal: f64 = inputs.file.value_of(v, 0.0);
     /// Bounds of the value.
     bounds: [f64; 2] = bounds.map(|b| inputs.file.value_of(v, b));
+    /// Nominal value of the number that the variable changes; `null` if it changes none or several.
+    number: Option<f64> =
+        nominal_number(inputs.file, variable).map(|x| inputs.units().from_si(variable.quantity, x));
+}
+
+impl TradedVariable {
+    /// Change that leads to a value of [`PointFact::variables`].
+    fn change(&self, value: f64) -> f64 {
+        value - self.nominal
+    }
+
+    /// Value of the number that the variable changes, or the change itself if there is none.
+    fn value(&self, value: f64) -> f64 {
+        value_of(self.number.map(|number| number - self.nominal), value, self.bounds)
+    }
 }
 
 record! {
@@ -435,23 +452,49 @@ impl TradeOffFacts {
             self.goals[0].name
         );
         let front = Table::of("Front", note, &columns, &self.points);
-        let variable = |k: usize| move |p: &&PointFact| number(p.variables[k]);
-        let variables: Vec<_> = (0..self.variables.len()).map(variable).collect();
-        let titles: Vec<String> = self.variables.iter().map(|v| with_brackets(&v.name, &v.unit)).collect();
-        let mut columns: Vec<Column<'_, &PointFact>> = vec![("point", &|p| p.point.to_string())];
-        columns.extend(titles.iter().zip(&variables).map(|(title, cell)| (title.as_str(), cell as _)));
-        let note = "Values of parameters, changes of all other variables.";
-        let designs = Table::of("Designs of the front", note, &columns, &self.points);
-        [front.if_any(), designs.if_any()].into_iter().flatten().collect()
+        if self.points.is_empty() {
+            return Vec::new();
+        }
+        vec![front, self.value_table(), self.change_table()]
     }
 
-    /// Writes a row for each point: goals, their metrics in each case, weights, variables, residual, violation, margin.
+    /// Variables of all points, below those of the nominal design and their bounds.
+    fn value_table(&self) -> Table {
+        type Row = (String, Vec<String>);
+        let row = |label: String, cell: &dyn Fn(usize, &TradedVariable) -> String| {
+            (label, self.variables.iter().enumerate().map(|(k, v)| cell(k, v)).collect::<Vec<_>>())
+        };
+        let mut rows = vec![
+            row("bounds".into(), &|_, v| range(v.bounds.map(|b| v.value(b)))),
+            row("nominal".into(), &|_, v| number(v.value(v.nominal))),
+        ];
+        let point = |p: &PointFact| row(p.point.to_string(), &|k, v| number(v.value(p.variables[k])));
+        rows.extend(self.points.iter().map(point));
+        let titles: Vec<String> = self.variables.iter().map(|v| with_brackets(&v.name, &v.unit)).collect();
+        let cells: Vec<_> = (0..titles.len()).map(|k| move |row: &Row| row.1[k].clone()).collect();
+        let mut columns: Vec<Column<'_, Row>> = vec![("point", &|row| row.0.clone())];
+        columns.extend(titles.iter().zip(&cells).map(|(title, cell)| (title.as_str(), cell as _)));
+        Table::of("Designs of the front", VALUES, &columns, rows)
+    }
+
+    /// Changes of all points from the nominal design.
+    fn change_table(&self) -> Table {
+        let titles: Vec<String> = self.variables.iter().map(|v| with_brackets(&v.name, &v.unit)).collect();
+        let change = |(k, v)| move |p: &&PointFact| signed(TradedVariable::change(v, p.variables[k]), "");
+        let changes: Vec<_> = self.variables.iter().enumerate().map(change).collect();
+        let mut columns: Vec<Column<'_, &PointFact>> = vec![("point", &|p| p.point.to_string())];
+        columns.extend(titles.iter().zip(&changes).map(|(title, cell)| (title.as_str(), cell as _)));
+        Table::of("Changes from the nominal design", "", &columns, &self.points)
+    }
+
+    /// Writes a row for each point: goals, their metrics in each case, weights, value and change of each variable,
+    /// residual, violation, margin. A variable that changes several numbers has no value.
     ///
     /// # Errors
     /// If `out` cannot be written.
     pub fn write_points(&self, out: impl Write) -> csv::Result<()> {
-        type Cell = Box<dyn Fn(&&PointFact) -> String>;
-        let mut columns: Vec<(String, Cell)> =
+        type Cell<'a> = Box<dyn Fn(&&PointFact) -> String + 'a>;
+        let mut columns: Vec<(String, Cell<'_>)> =
             vec![("point".into(), Box::new(|p: &&PointFact| p.point.to_string()))];
         for (k, goal) in self.goals.iter().enumerate() {
             columns.push((with_brackets(&goal.name, &goal.unit), Box::new(move |p| p.goals[k].to_string())));
@@ -467,10 +510,12 @@ impl TradeOffFacts {
             columns.push((format!("weight {}", goal.name), Box::new(move |p| p.weights[k].to_string())));
         }
         for (k, variable) in self.variables.iter().enumerate() {
-            let title = with_brackets(&variable.name, &variable.unit);
-            columns.push((title, Box::new(move |p| p.variables[k].to_string())));
+            let title = |of: &str| with_brackets(&format!("{of} {}", variable.name), &variable.unit);
+            let value = move |x| variable.number.map_or(String::new(), |_| variable.value(x).to_string());
+            columns.push((title("value"), Box::new(move |p| value(p.variables[k]))));
+            columns.push((title("change"), Box::new(move |p| variable.change(p.variables[k]).to_string())));
         }
-        let last: [(&str, Cell); 5] = [
+        let last: [(&str, Cell<'_>); 5] = [
             ("residual", Box::new(|p| p.kkt.to_string())),
             ("violation", Box::new(|p| p.violation.to_string())),
             ("margin", Box::new(|p| p.margin.map_or(String::new(), |m| m.to_string()))),

@@ -43,6 +43,8 @@ fn the_strut_that_was_measured_is_found_although_one_reading_is_a_slip() {
         "the readings determine all 6 variables",
         "81 readings in 27 postures",
         "Proposed readings",
+        "report: out/report.html",
+        "written: out/residuals.csv, out/covariance.csv, out/summary.json",
         "saved: as_built.toml",
     ] {
         assert!(text.contains(words), "{words}: {text}");
@@ -146,6 +148,12 @@ fn priors_change_nothing_but_what_they_are_about() {
     let sources: Vec<&str> =
         facts["variables"].as_array().unwrap().iter().map(|v| v["source"].as_str().unwrap()).collect();
     assert_eq!(sources[..3], ["learnt from data", "still your prior", "no prior"]);
+    // Tables show coordinates, `start` and `end` changes.
+    let top = &facts["variables"][1];
+    let [nominal, end] = ["nominal", "end"].map(|key| top[key].as_f64().unwrap());
+    assert!((nominal - 541.02).abs() < 1e-9 && end.abs() < 5.0, "{top}");
+    let mut rows = printed.lines().filter(|line| line.trim_start().starts_with("strut_top_y"));
+    assert!(rows.any(|row| row.contains("541.02 mm")), "{printed}");
     assert_eq!((&facts["priors"], &facts["validation"]["data"]), (&2.into(), &"odd.csv".into()));
     assert!(facts["validation"]["measures"][0]["rms"].as_f64().unwrap() > 0.0);
 }

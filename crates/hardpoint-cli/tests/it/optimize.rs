@@ -32,6 +32,8 @@ fn the_tutorial_finds_the_toe_curve_as_it_prints_it() {
     let output = bench.run(&["optimize", "strut_toe.toml", "-o", "out", "--save", "found.toml"]);
     let text = String::from_utf8(output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(0), "{text}{}", String::from_utf8_lossy(&output.stderr));
+    let written = "\nreport: out/report-bump.html\nreport: out/report-steer.html\nwritten: out/summary.json\nsaved:";
+    assert!(text.contains(written), "{text}");
     let tutorial = std::fs::read_to_string(root().join("docs/tutorial.md")).unwrap();
     // Durations depend on the machine; the remaining gradient and the last iterations depend on round-off.
     let iteration = |line: &str| line.trim_start().chars().next().is_some_and(|c| ('2'..='9').contains(&c));
@@ -504,6 +506,14 @@ fn a_point_of_a_front_is_saved_and_its_goals_are_those_of_the_saved_model() {
     assert!(point["kkt"].as_f64().unwrap() < 1e-6, "{point}");
     let row = bench.text("out/front.csv").lines().nth(2).unwrap().to_owned();
     assert_eq!(row.split(',').nth(1).unwrap().parse::<f64>().ok(), point["goals"][0].as_f64());
+    // The first variable moves two hardpoints, the third one along z: its value is a coordinate.
+    let table = bench.text("out/front.csv");
+    let mut cells = table.lines().next().unwrap().split(',').zip(row.split(','));
+    let mut cell = |title: &str| cells.find(|(t, _)| *t == title).unwrap().1.parse::<f64>().ok();
+    assert_eq!((cell("value lca_y [mm]"), cell("change lca_y [mm]")), (None, point["variables"][0].as_f64()));
+    let (value, change) = (cell("value lca_front_z [mm]").unwrap(), cell("change lca_front_z [mm]").unwrap());
+    assert_eq!(Some(change), point["variables"][2].as_f64());
+    assert!((value - change - 124.89).abs() < 1e-9, "{value} {change}");
     bench.run(&["run", "chosen.toml", "-o", "run"]);
     let metrics = bench.text("run/metrics.csv");
     for (k, name) in ["track", "camber"].iter().enumerate() {

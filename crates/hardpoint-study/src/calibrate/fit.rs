@@ -279,12 +279,18 @@ impl<'b> FitWorkspace<'b> {
 
     /// Bounds of a parameter in natural steps; infinite if it has none, or bounds are not kept.
     fn bounds_of(&self, parameter: FittedParameter, step: f64) -> [f64; 2] {
-        let of = |v: VariableId| self.model.variables[v.0].bounds.filter(|_| self.request.keep_bounds);
-        let bounds = match parameter {
-            FittedParameter::Variable(v) => of(v),
-            FittedParameter::Driver(_) | FittedParameter::Output(_) => None,
-        };
+        let bounds = self.kept_bounds(parameter);
         bounds.map_or([f64::NEG_INFINITY, f64::INFINITY], |b| b.map(|x| x / step))
+    }
+
+    /// Bounds of a parameter, SI, if it has any and they are kept.
+    fn kept_bounds(&self, parameter: FittedParameter) -> Option<[f64; 2]> {
+        match parameter {
+            FittedParameter::Variable(v) => {
+                self.model.variables[v.0].bounds.filter(|_| self.request.keep_bounds)
+            }
+            FittedParameter::Driver(_) | FittedParameter::Output(_) => None,
+        }
     }
 
     fn is_bounded(&self) -> bool {
@@ -762,6 +768,7 @@ impl<'b> FitWorkspace<'b> {
             status: search.status,
             design,
             estimates: search.x.iter().zip(&self.steps).map(|(x, step)| x * step).collect(),
+            bounds: self.parameters.iter().map(|p| self.kept_bounds(*p)).collect(),
             parameters: self.parameters,
             validation,
             left_out: self.left_out,

@@ -159,6 +159,8 @@ pub struct Calibration {
     pub parameters: Vec<FittedParameter>,
     /// Change of each fitted parameter from the nominal design, SI.
     pub estimates: Vec<f64>,
+    /// Bounds of each of these changes, SI, if the fit keeps any.
+    pub bounds: Vec<Option<[f64; 2]>>,
     /// Parameters that the mechanism cannot follow. They keep their nominal values.
     pub left_out: Vec<FittedParameter>,
     /// Fitted design: change of every variable of the model.
