@@ -64,7 +64,9 @@ class Model:
         iterations: int | None = None,
         workers: int | None = None,
         progress: _Progress = None,
-    ) -> tuple[str, list[float] | None, list[float] | None]: ...
+        other_assemblies: bool | None = False,
+        both_senses: bool | None = False,
+    ) -> tuple[tuple[str, list[float] | None, list[float] | None], Model | None]: ...
     def trade_off(
         self,
         goals: list[str],
@@ -95,6 +97,7 @@ class Model:
         iterations: int | None,
         priors: list[tuple[str, float]],
         priors_from: str | None,
+        groups: list[tuple[str, list[str], float]],
         offsets: list[str],
         validate: str | None,
         progress: _Progress = None,

@@ -366,7 +366,7 @@ class _Search(NamedTuple):
 
 def _search(asked: _Search, first: int) -> tuple[str, list[float] | None, list[float] | None]:
     """Search from one start: its result as JSON, the optimised design with rounded numbers, and the exact one."""
-    return asked.model._native.optimize(asked.model._studied, first, 1, asked.iterations, 1, None)
+    return asked.model._native.optimize(asked.model._studied, first, 1, asked.iterations, 1, None)[0]
 
 
 KEPT = 1e-8

@@ -466,13 +466,38 @@ class Model:
 
     @timed
     def optimize(
-        self, *, starts: int | None = None, iterations: int | None = None, workers: int | None = None, progress: Progress = None
+        self,
+        *,
+        starts: int | None = None,
+        iterations: int | None = None,
+        other_assemblies: bool | None = None,
+        both_senses: bool | None = None,
+        workers: int | None = None,
+        progress: Progress = None,
     ) -> Study:
-        """Optimises the design for the goals of `[optimize]` in the model, in all cases."""
-        text, design, exact = self._native.optimize(
-            self._studied, 0, count("starts", starts, 0), count("iterations", iterations, 0), count("workers", workers), listener(progress)
+        """Optimises the design for the goals of `[optimize]` in the model, in all cases.
+
+        With `other_assemblies` the searches start from the other assemblies of the mechanism as well, with `both_senses` also with all
+        drivers in the opposite sense (docs/optimisation.md); by default as in the file. The study's `model` is in the assembly and
+        sense of the optimum.
+        """
+        found, other = self._native.optimize(
+            self._studied,
+            0,
+            count("starts", starts, 0),
+            count("iterations", iterations, 0),
+            count("workers", workers),
+            listener(progress),
+            other_assemblies,
+            both_senses,
         )
-        return outcome(self, text, design, exact)
+        return outcome(self if other is None else self._assembled(other), *found)
+
+    def _assembled(self, native: _native.Model) -> Model:
+        """This model in another assembly or sense."""
+        if any(self._added):
+            native = native.with_variables(*self._added)
+        return Model(native, self._case, self._added, self._folder)
 
     @timed
     def trade_off(
@@ -531,6 +556,7 @@ class Model:
         iterations: int | None = None,
         prior: Mapping[str, float] | None = None,
         priors: str | None = None,
+        groups: Mapping[str, Mapping[str, Any]] | None = None,
         offsets: Iterable[str] = (),
         validate: Any = None,
         progress: Progress = None,
@@ -540,7 +566,7 @@ class Model:
 
         `prior` has standard deviations of variables about their nominal values, `priors="tolerances"` takes their
         tolerances, `offsets` names drivers and measures with an unknown offset, and `validate` is a table that is
-        compared, but not fitted.
+        compared, but not fitted. `groups` are as in the file: `{"rods": {"variables": ["rod_1", "rod_2"], "within": 0.05}}`.
         """
         with contextlib.ExitStack() as stack:
             text, design = self._native.calibrate(
@@ -551,6 +577,7 @@ class Model:
                 count("iterations", iterations, 0),
                 [(name, number(f"prior of `{name}`", value)) for name, value in by_name("prior", prior).items()],
                 priors,
+                [_group(name, group) for name, group in by_name("groups", groups).items()],
                 listed("offsets", offsets),
                 None if validate is None else _table(validate, stack),
                 listener(progress),
@@ -909,6 +936,14 @@ def _restored(text: str, file: str, files: tuple, added: tuple[bool, bool], case
         return Model(_restored(text, file, files, added, None)._native, case, added)
     native = _native.parse(text, file, files=dict(files))
     return Model(native.with_variables(*added) if any(added) else native, None, added)
+
+
+def _group(name: str, group: Any) -> tuple[str, list[str], float]:
+    """Name, members and deviation of a group, from those of the file."""
+    given = by_name(f"group `{name}`", group)
+    if given.keys() != {"variables", "within"}:
+        raise UsageError.saying(f"group `{name}` has `variables` and `within`, as in the file, not {group!r}")
+    return name, listed(f"variables of group `{name}`", given["variables"]), number(f"within of group `{name}`", given["within"])
 
 
 def _table(data: Any, stack: contextlib.ExitStack) -> str:

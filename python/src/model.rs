@@ -37,7 +37,7 @@ pub(crate) struct Model {
 }
 
 impl Model {
-    fn new(whole: ModelFile) -> Self {
+    pub fn new(whole: ModelFile) -> Self {
         let cases = match whole.model.cases.len() {
             0 => vec![whole.clone()],
             n => (0..n).map(|k| whole.in_case(CaseId(k))).collect(),

@@ -6,14 +6,14 @@ use std::path::Path;
 use std::sync::Arc;
 
 use hardpoint::Analysis;
-use hardpoint::model::{CaseId, VariableId};
+use hardpoint::model::{CaseId, PriorGroup, VariableId};
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::topology::Formulation;
-use hardpoint_file::ModelFile;
+use hardpoint_file::{Diagnostics, ModelFile};
 use hardpoint_report::calibrate::{CalibrateFacts, CalibrationInputs};
 use hardpoint_report::diagnose;
 use hardpoint_report::maps::MapFact;
-use hardpoint_report::optimize::{OptimizeFacts, rounded};
+use hardpoint_report::optimize::{OptimizeFacts, file_of_variant, placed, rounded};
 use hardpoint_report::page::Table;
 use hardpoint_report::tolerance::{ToleranceFacts, ToleranceInputs, nominal_stop};
 use hardpoint_report::trade_off::{TradeOffFacts, TradeOffInputs};
@@ -23,7 +23,7 @@ use hardpoint_report::whatif::WhatIfFacts;
 use hardpoint_study::calibrate::{self, Loss, calibrate};
 use hardpoint_study::difference::DifferenceScheme;
 use hardpoint_study::grid::GridMap;
-use hardpoint_study::optimize::{self, optimize};
+use hardpoint_study::optimize::{self, Variant, optimize};
 use hardpoint_study::request::variable;
 use hardpoint_study::tolerance::{self, tolerance, toleranced_designs};
 use hardpoint_study::trade_off::{self, trade_off};
@@ -60,6 +60,8 @@ fn outcome(facts: &impl Serialize, tables: &[Table]) -> String {
 
 /// Result of a search: the facts, the optimised design with rounded numbers, and the exact one.
 type Searched = (String, Option<Vec<f64>>, Option<Vec<f64>>);
+/// Group of variables with a common deviation: its name, its members, and the deviation of a member in their unit.
+type Group = (String, Vec<String>, f64);
 
 impl Model {
     /// Values of all variables of a design, in the units of the file.
@@ -86,12 +88,24 @@ impl Model {
         })?;
         Ok((file, motions))
     }
+
+    /// This model in the assembly and sense of a variant, with the placements of a design.
+    fn in_variant(&self, variant: &Variant, design: &[f64]) -> Result<Self, Diagnostics> {
+        let (file, motions) = file_of_variant(&self.whole, variant, Formulation::Relative)?;
+        // Variables that `with_coordinates` has added come last, are not in the text, and do not change.
+        let design = &design[..file.model.variables.len()];
+        Ok(Self::new(placed(&file, &motions, design)?))
+    }
 }
 
 #[pymethods]
 impl Model {
-    /// Optimises the design.
-    #[pyo3(signature = (case=None, first=0, starts=None, iterations=None, workers=None, progress=None))]
+    /// Optimises the design: the result, and the model in the assembly and sense of the optimum, if these are not its
+    /// own.
+    #[pyo3(signature = (
+        case=None, first=0, starts=None, iterations=None, workers=None, progress=None,
+        other_assemblies=Some(false), both_senses=Some(false)
+    ))]
     #[expect(clippy::too_many_arguments, reason = "a call of Python")]
     fn optimize(
         &self,
@@ -102,15 +116,16 @@ impl Model {
         iterations: Option<usize>,
         workers: Option<usize>,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<Searched> {
+        other_assemblies: Option<bool>,
+        both_senses: Option<bool>,
+    ) -> PyResult<(Searched, Option<Self>)> {
         let (file, motions) = &self.searched(case)?;
         let overrides = optimize::Overrides {
             starts,
             iterations,
             first,
-            // The designs are values of variables, of the model's own assembly.
-            other_assemblies: Some(false),
-            both_senses: Some(false),
+            other_assemblies,
+            both_senses,
             ..optimize::Overrides::default()
         };
         let request = optimize::Request::of(&file.model, overrides).map_err(Failure::from)?;
@@ -118,11 +133,22 @@ impl Model {
         let found = controlled(py, progress, threads(workers), |control| {
             optimize(&file.model, motions, &request, control)
         })?;
-        let facts = OptimizeFacts::of(file, asked, &found);
+        let mut facts = OptimizeFacts::of(file, asked, &found);
         let best = found.best.and_then(|k| found.searches[k].found.as_ref());
         let exact = best.map(|best| self.values_of(&best.design));
-        let design = best.map(|best| self.values_of(&rounded(file, asked, &best.design)));
-        Ok((outcome(&facts, &facts.tables()), design, exact))
+        let mut saved = best.map(|best| rounded(file, asked, &best.design));
+        let variant = found.best.map(|k| &found.variants[found.searches[k].variant]);
+        let other = variant.filter(|variant| !variant.is_own()).zip(saved.as_ref());
+        let other = match other.map(|(variant, design)| self.in_variant(variant, design)).transpose() {
+            Ok(other) => other,
+            Err(found) => {
+                facts.not_saved(&found.list().first().map_or(String::new(), |d| d.message.clone()));
+                saved = None;
+                None
+            }
+        };
+        let design = saved.map(|design| self.values_of(&design));
+        Ok(((outcome(&facts, &facts.tables()), design, exact), other))
     }
 
     /// Trades goals against each other; the design is that of a point, by default of the balanced compromise.
@@ -218,7 +244,7 @@ impl Model {
 
     /// Fits the design to measured data: the result, and the fitted design.
     #[pyo3(signature = (
-        measured, sigmas, variables, loss, iterations, priors, priors_from, offsets, validate, progress=None
+        measured, sigmas, variables, loss, iterations, priors, priors_from, groups, offsets, validate, progress=None
     ))]
     #[expect(clippy::too_many_arguments, reason = "a call of Python")]
     fn calibrate(
@@ -231,6 +257,7 @@ impl Model {
         iterations: Option<usize>,
         priors: Vec<(String, f64)>,
         priors_from: Option<String>,
+        groups: Vec<Group>,
         offsets: Vec<String>,
         validate: Option<&str>,
         progress: Option<Py<PyAny>>,
@@ -246,10 +273,19 @@ impl Model {
             Ok((variable, file.units.to_si(file.model.variables[variable.0].quantity, sigma)))
         };
         let priors = priors.into_iter().map(prior).collect::<Result<_, RequestError>>();
+        let group = |(name, members, within): Group| {
+            let members = members.iter().map(|name| variable(&file.model, name));
+            let variables = members.collect::<Result<Vec<VariableId>, RequestError>>()?;
+            let quantity = variables.first().map(|v| file.model.variables[v.0].quantity);
+            let within = quantity.map_or(within, |quantity| file.units.to_si(quantity, within));
+            Ok(PriorGroup { name, variables, within })
+        };
+        let groups = groups.into_iter().map(group).collect::<Result<_, RequestError>>();
         let overrides = calibrate::Overrides {
             variables,
             priors: priors.map_err(Failure::from)?,
             priors_from,
+            groups: groups.map_err(Failure::from)?,
             offsets,
             validation: others.as_ref().map(|data| &data.measurements),
             loss,

@@ -589,7 +589,7 @@ def test_searches_from_many_starts(here):
 
 
 def optimized(model, starts):
-    return model._native.optimize(None, 0, starts, None, 1, None)
+    return model._native.optimize(None, 0, starts, None, 1, None)[0]
 
 
 def test_the_best_search():

@@ -83,6 +83,40 @@ def test_designs_drawn_are_those_of_the_tolerance_study(command, tmp_path):
                 assert float(cells[head.index(name)]) == pytest.approx(value, rel=1e-12, abs=1e-12)
 
 
+CRANK = """
+name = "crank"
+units = { length = "mm", angle = "deg" }
+planar = "xy"
+hardpoints = { O = [0, 0], A = [100, 0] }
+bodies = { crank = {} }
+joints.O = { type = "revolute", bodies = ["ground", "crank"], at = "O" }
+drivers.motor = { joint = "O", law = "30*t" }
+points.A = { body = "crank", at = "A" }
+metrics.y = { of = "A.y", take = "value", at = 1 }
+design.longer = { move = "A", along = "x", bounds = [-20, 20] }
+optimize.goals.y = { target = -55 }
+time = { end = 1, steps = 10 }
+"""
+
+
+def test_optimize_in_the_opposite_sense(command, tmp_path):
+    path = tmp_path / "crank.toml"
+    path.write_text(CRANK)
+    model = hardpoint.read(path)
+    study = model.optimize(both_senses=True)
+    same(study, printed(command("optimize", path, "--both-senses", "--json")))
+    assert study.facts["starts"][study.facts["best_start"]]["reversed"]
+    # The saved model is driven so, and has the goal of the optimum: a crank of 110 mm, turned by -30 deg.
+    study.save(tmp_path / "found.toml")
+    saved = hardpoint.read(tmp_path / "found.toml")
+    assert "reversed = true" in saved.text and saved.run().metric("y") == pytest.approx(-55, abs=1e-3)
+    assert study.model.run(study.design).metric("y") == pytest.approx(-55, abs=1e-6)
+    # Without them, the model's own sense is searched, where the goal is out of reach.
+    own = model.optimize()
+    assert own.model is model and own.facts["objective"]["after"] > 1000
+    assert model.optimize(other_assemblies=True).facts["assemblies"] == own.facts["assemblies"]
+
+
 def test_calibrate(command, tmp_path):
     path, data = MODELS / "studies/strut_calibrate.toml", MODELS / "studies/strut_measured.csv"
     model = hardpoint.read(path)
@@ -94,6 +128,19 @@ def test_calibrate(command, tmp_path):
     known = model.calibrate(data, prior={"strut_top_y": 0.2}, offsets=["half_track"])
     same(known, printed(command("calibrate", path, data, "--prior", "strut_top_y=0.2", "--offset", "half_track", "--json")))
     assert known.facts["variables"][1]["source"] == "still your prior"
+
+
+def test_calibrate_with_groups():
+    data = MODELS / "studies/strut_measured.csv"
+    model = hardpoint.read(MODELS / "studies/strut_calibrate.toml")
+    group = {"variables": ["strut_top_x", "strut_top_y"], "within": 0.05}
+    found = model.calibrate(data, groups={"top": group})
+    assert found.design == model.with_(calibrate={"groups": {"top": group}}).calibrate(data).design
+    assert found.design != model.calibrate(data).design
+    with pytest.raises(hardpoint.UsageError, match="`variables` and `within`"):
+        model.calibrate(data, groups={"top": ["strut_top_x", "strut_top_y"]})
+    with pytest.raises(hardpoint.StudyError, match="fewer than two different members"):
+        model.calibrate(data, groups={"top": {**group, "variables": ["strut_top_x"]}})
 
 
 def test_sweep(command, tmp_path):

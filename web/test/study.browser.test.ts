@@ -79,5 +79,10 @@ describe('the page of a study', () => {
     expect(Math.abs((high - low) / 6 / Number(fact('rss')) - 1)).toBeLessThan(INTERPOLATION)
     expect(Math.abs((high + low) / 2 - Number(fact('nominal')))).toBeLessThan(INTERPOLATION)
     expect(content.caption).toBe('Tolerance band at constant wheel_travel, to first order.')
+    // Worst cases are known over time only.
+    const worst = ['worst-case minimum', 'worst-case maximum']
+    const labels = (of: typeof content) => of.lines.map(({ label }) => label).filter((label) => worst.includes(label))
+    expect(labels(content)).toEqual([])
+    expect(labels(valueContent(new State(report), { quantity: toe, order: 0 }))).toEqual(worst)
   })
 })

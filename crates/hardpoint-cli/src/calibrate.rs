@@ -44,6 +44,7 @@ fn calibrate_in(session: &Session, options: &Calibrate) -> Result<Outcome, Outco
         variables: options.variable.clone(),
         priors: options.prior.iter().map(|text| prior(session, &file, text)).collect::<Result<_, _>>()?,
         priors_from: options.priors.clone(),
+        groups: Vec::new(),
         offsets: options.offset.clone(),
         validation: validation.as_ref().map(|data| &data.measurements),
         loss: options.loss.of(),

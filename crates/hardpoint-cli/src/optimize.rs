@@ -3,13 +3,12 @@
 use std::io::Write;
 use std::num::NonZero;
 use std::path::Path;
-use std::sync::Arc;
 
 use hardpoint::Solution;
 use hardpoint::model::{Model, OptimizationSettings};
 use hardpoint::topology::Formulation;
 use hardpoint_file::{Diagnostic, Diagnostics, ModelFile};
-use hardpoint_report::optimize::{OptimizeFacts, progress_line, to_save};
+use hardpoint_report::optimize::{OptimizeFacts, file_of_variant, placed, progress_line, to_save};
 use hardpoint_study::optimize::{
     DesignAssessment, FailedDesign, Optimization, Overrides, Request, judge, optimize,
 };
@@ -159,12 +158,7 @@ impl<'a> Search<'a> {
     fn vary(&mut self) {
         let variant = self.found.best.map(|k| &self.found.variants[self.found.searches[k].variant]);
         self.varied = variant.filter(|variant| !variant.is_own()).map(|variant| {
-            let file = self.file.in_assembly(&variant.start, variant.reversed)?;
-            let formulation = self.motions.analyses()[0].topology().formulation;
-            let motions = Motions::of(file.model.motions().into_iter().map(Arc::new), formulation);
-            // The search has solved these motions.
-            let motions = motions.unwrap_or_else(|_| Vec::new().into());
-            Ok((file, motions))
+            file_of_variant(self.file, variant, self.motions.analyses()[0].topology().formulation)
         });
     }
 
@@ -177,11 +171,7 @@ impl<'a> Search<'a> {
         match &self.varied {
             None => Ok(self.file.clone()),
             Some(Err(found)) => Err(failed(found)),
-            Some(Ok((file, motions))) => {
-                let start = motions.analyses().first().and_then(|analysis| analysis.start_placements(design));
-                let start = start.unwrap_or_else(|| file.model.start.clone());
-                file.in_assembly(&start, false).map_err(|found| failed(&found))
-            }
+            Some(Ok((file, motions))) => placed(file, motions, design).map_err(|found| failed(&found)),
         }
     }
 

@@ -208,11 +208,7 @@ struct Results<'a> {
 
 impl Results<'_> {
     /// Writes tables, a page for each motion, and the summary last.
-    fn finish(
-        &self,
-        session: &Session,
-        folder: Option<Folder>,
-    ) -> Result<(SweepFacts, ()), Outcome> {
+    fn finish(&self, session: &Session, folder: Option<Folder>) -> Result<(SweepFacts, ()), Outcome> {
         let mut files = Vec::new();
         let (folder, tally) = match folder {
             None => (None, self.tally(session)?),

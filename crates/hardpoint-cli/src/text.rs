@@ -142,7 +142,8 @@ pub fn study(mut rows: Vec<(&str, String)>, duration: f64, tables: &[Table]) -> 
 
 /// Files that a study wrote, after an empty line: a line for each page, as of a run, then one for all others.
 pub fn written(files: &[String]) -> String {
-    let (pages, others): (Vec<&String>, Vec<&String>) = files.iter().partition(|file| file.ends_with(".html"));
+    let (pages, others): (Vec<&String>, Vec<&String>) =
+        files.iter().partition(|file| file.ends_with(".html"));
     let pages: String = pages.into_iter().map(|page| format!("report: {page}\n")).collect();
     let others: Vec<&str> = others.into_iter().map(String::as_str).collect();
     if files.is_empty() { pages } else { format!("\n{pages}written: {}\n", others.join(", ")) }

@@ -1,12 +1,13 @@
 //! Result of an optimisation: nominal and optimised goals, limits and variables, in the model's units.
 
+use std::sync::Arc;
+
 use hardpoint::joint::Quantity;
 use hardpoint::measure::Output;
-use hardpoint::model::{
-    Dimension, LimitTarget, Model, OptimizationSettings, StartPlacement, VariableId,
-};
+use hardpoint::model::{Dimension, LimitTarget, Model, OptimizationSettings, StartPlacement, VariableId};
 use hardpoint::space::Vec3;
-use hardpoint_file::{Diagnostic, ModelFile, Units};
+use hardpoint::topology::Formulation;
+use hardpoint_file::{Diagnostic, Diagnostics, ModelFile, Units};
 use hardpoint_study::optimize::{
     ActiveConstraint, DesignAssessment, FailedDesign, Iteration, LIMIT_KEPT, Optimization, SearchResult,
     Status, Variant, judge,
@@ -18,7 +19,8 @@ use crate::figures::{error, number, some_of, symbol, unit, variable_unit, with_u
 use crate::page::{Payload, Table};
 use crate::record::{Column, record};
 use crate::study::{
-    BeforeAfter, Evaluations, MovedHardpoint, case_name, nominal_number, range, signed, titled, value_of, without_round_off,
+    BeforeAfter, Evaluations, MovedHardpoint, case_name, nominal_number, range, signed, titled, value_of,
+    without_round_off,
 };
 
 /// Multiplier, as a fraction of the objective per range of a variable, below which an active constraint is not
@@ -477,6 +479,31 @@ const SAVED: f64 = 1e-7;
 /// Violation of limits in words; `None` if it is round-off.
 fn exceeded(violation: f64) -> Option<String> {
     (violation > LIMIT_KEPT).then(|| error(violation))
+}
+
+/// File in the assembly and sense of a variant, with its motions: designs of the variant are judged and saved there.
+///
+/// # Errors
+/// If the file cannot have them.
+pub fn file_of_variant(
+    file: &ModelFile,
+    variant: &Variant,
+    formulation: Formulation,
+) -> Result<(ModelFile, Motions<'static>), Diagnostics> {
+    let file = file.in_assembly(&variant.start, variant.reversed)?;
+    let motions = Motions::of(file.model.motions().into_iter().map(Arc::new), formulation);
+    // The search has solved these motions.
+    let motions = motions.unwrap_or_else(|_| Vec::new().into());
+    Ok((file, motions))
+}
+
+/// File of a variant to save a design in: with the placements of that design.
+///
+/// # Errors
+/// If the file cannot have them.
+pub fn placed(file: &ModelFile, motions: &Motions<'_>, design: &[f64]) -> Result<ModelFile, Diagnostics> {
+    let start = motions.analyses().first().and_then(|analysis| analysis.start_placements(design));
+    file.in_assembly(&start.unwrap_or_else(|| file.model.start.clone()), false)
 }
 
 /// Design to save: numbers with as few digits as still describe the optimum, checked by solving it.

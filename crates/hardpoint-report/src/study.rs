@@ -190,8 +190,7 @@ pub(crate) fn signed(by: f64, unit: &str) -> String {
 }
 
 /// Note below tables with values of variables.
-pub(crate) const VALUES: &str =
-    "Values of the number that a variable changes; where it changes several, changes of the design configuration.";
+pub(crate) const VALUES: &str = "Values of the number that a variable changes; where it changes several, changes of the design configuration.";
 
 /// Formatted bounds.
 pub(crate) fn range([low, high]: [f64; 2]) -> String {

@@ -608,8 +608,7 @@ impl ToleranceInputs<'_> {
         let of_limit = self.found.limits.iter().map(|l| l.spread).chain(0..self.found.metrics.len());
         let first = of_limit.map(|s| &self.found.metrics[s]).find(|m| m.motion == motion);
         page.open_on(first.map(|m| &self.model().metrics[m.metric]), outputs);
-        let designs: Vec<Design> =
-            EDGES.iter().map(|edge| self.band(motion, edge, &page, outputs)).collect();
+        let designs: Vec<Design> = EDGES.iter().map(|edge| self.band(motion, edge, &page, outputs)).collect();
         page.designs.extend(designs.into_iter().filter(|d| d.quantities.iter().any(Option::is_some)));
         page.covariance_root = Some(self.covariance_root());
         let tables = facts.tables().into_iter().chain(self.histograms(motion));

@@ -32,7 +32,8 @@ fn the_tutorial_finds_the_toe_curve_as_it_prints_it() {
     let output = bench.run(&["optimize", "strut_toe.toml", "-o", "out", "--save", "found.toml"]);
     let text = String::from_utf8(output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(0), "{text}{}", String::from_utf8_lossy(&output.stderr));
-    let written = "\nreport: out/report-bump.html\nreport: out/report-steer.html\nwritten: out/summary.json\nsaved:";
+    let written =
+        "\nreport: out/report-bump.html\nreport: out/report-steer.html\nwritten: out/summary.json\nsaved:";
     assert!(text.contains(written), "{text}");
     let tutorial = std::fs::read_to_string(root().join("docs/tutorial.md")).unwrap();
     // Durations depend on the machine; the remaining gradient and the last iterations depend on round-off.

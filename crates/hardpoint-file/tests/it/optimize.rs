@@ -121,7 +121,10 @@ fn a_key_without_its_first_word_is_reported_with_the_whole() {
     for (key, whole) in [("iterations = 5", "max_iterations"), ("margin = 0.1", "min_margin")] {
         let text = MODEL.replace("min_margin = 0.03", key);
         let message = parse(&text, "optimize.toml").unwrap_err().to_string();
-        assert!(message.contains("HP0103") && message.contains(&format!("did you mean `{whole}`?")), "{message}");
+        assert!(
+            message.contains("HP0103") && message.contains(&format!("did you mean `{whole}`?")),
+            "{message}"
+        );
         assert_eq!(message.matches("error[").count(), 1, "{message}");
     }
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use hardpoint::Analysis;
 use hardpoint::model::{
-    ElementId, Measurements, Model, Offset, OffsetSource, Reading, VariableId, VariablePrior,
+    ElementId, Measurements, Model, Offset, OffsetSource, PriorGroup, Reading, VariableId, VariablePrior,
 };
 use hardpoint::topology::Formulation;
 use hardpoint_file::parse;
@@ -565,6 +565,24 @@ fn requests_check_their_priors() {
     }
     let other = Overrides { priors: prior(1e-3), variables: vec!["radius".into()], ..Overrides::default() };
     assert_eq!(of(other).unwrap_err().message, "`rod` has a prior but is not fitted");
+    let group = |members: &[usize], within: f64| Overrides {
+        groups: vec![PriorGroup {
+            name: "pair".into(),
+            variables: members.iter().map(|v| VariableId(*v)).collect(),
+            within,
+        }],
+        ..Overrides::default()
+    };
+    for (members, within, words) in [
+        (&[0][..], 1e-4, "fewer than two different members"),
+        (&[0, 0], 1e-4, "fewer than two different members"),
+        (&[0, 2], 0.0, "is not positive"),
+    ] {
+        assert!(of(group(members, within)).unwrap_err().message.contains(words), "{words}");
+    }
+    let not_fitted = Overrides { variables: vec!["rod".into()], ..group(&[0, 2], 1e-4) };
+    assert_eq!(of(not_fitted).unwrap_err().message, "`radius` of group `pair` is not fitted");
+    assert_eq!(of(group(&[0, 2], 1e-4)).unwrap().groups.len(), 1);
     let offset = Overrides { offsets: vec!["moter".into()], ..Overrides::default() };
     assert_eq!(of(offset).unwrap_err().help, "did you mean `motor`?");
     let tolerances = Overrides { priors_from: Some("tolerances".into()), ..Overrides::default() };

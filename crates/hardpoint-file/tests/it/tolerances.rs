@@ -783,8 +783,8 @@ time = { end = 1.0, steps = 20 }
         };
         assert!((output([0.0; 2]) - band.nominal).abs() < 1e-9, "t = {t}: {}", band.nominal);
         // e^2 times the largest second derivative by an offset e: twice the error beyond first order.
-        let second =
-            (1.0 + 2.0 / sin + (1.0 + coupler / rocker) / (sin * sin)) * (4.0 * play).powi(2) / (rocker * coupler * sin);
+        let second = (1.0 + 2.0 / sin + (1.0 + coupler / rocker) / (sin * sin)) * (4.0 * play).powi(2)
+            / (rocker * coupler * sin);
         let mut widest = 0.0_f64;
         for _ in 0..100_000 / curve.times.len() {
             let offsets = [play; 4].map(&mut in_hole);

@@ -1,7 +1,11 @@
 //! Request for a calibration.
 
+use std::collections::BTreeSet;
+
 use hardpoint::measure::outputs;
-use hardpoint::model::{DriverId, Measurements, Model, Offset, OffsetSource, VariableId, VariablePrior};
+use hardpoint::model::{
+    DriverId, Measurements, Model, Offset, OffsetSource, PriorGroup, VariableId, VariablePrior,
+};
 use hardpoint::topology::Formulation;
 
 use super::prior::parameters_of;
@@ -39,6 +43,9 @@ pub struct Overrides<'a> {
     pub priors: Vec<(VariableId, f64)>,
     /// Source of the priors of all other variables, of [`PRIORS`]; `None` for that of the file.
     pub priors_from: Option<String>,
+    /// Groups of variables with a common deviation, in addition to those of the file; one of the same name replaces
+    /// that of the file.
+    pub groups: Vec<PriorGroup>,
     /// Names of drivers and outputs whose offsets are fitted in addition.
     pub offsets: Vec<String>,
     /// Measurements that are not fitted but compared with the fitted design.
@@ -102,7 +109,7 @@ impl<'a> Request<'a> {
         let from_tolerances = from.transpose()?.is_some() || settings.is_some_and(|s| s.tolerance_priors);
         let mut prior = Prior {
             variables: priors(model, &variables, overrides)?,
-            groups: settings.map_or(Vec::new(), |s| s.groups.clone()),
+            groups: groups(model, &variables, overrides)?,
             offsets: offsets(model, overrides)?,
         };
         if from_tolerances {
@@ -163,6 +170,47 @@ fn priors(
             Some(prior) => prior.sigma = *sigma,
             None => found.push(VariablePrior { variable: *variable, mean: 0.0, sigma: *sigma }),
         }
+    }
+    Ok(found)
+}
+
+/// Groups of the file with those of the caller.
+fn groups(
+    model: &Model,
+    variables: &[VariableId],
+    overrides: &Overrides<'_>,
+) -> Result<Vec<PriorGroup>, RequestError> {
+    let mut found = model.calibrating.as_ref().map_or(Vec::new(), |s| s.groups.clone());
+    for group in &overrides.groups {
+        let PriorGroup { name, variables: members, within } = group;
+        let of = |v: &VariableId| &model.variables[v.0];
+        let different: BTreeSet<usize> = members.iter().map(|v| v.0).collect();
+        if members.len() < 2 || different.len() < members.len() {
+            return Err(RequestError::invalid(
+                format!("group `{name}` has fewer than two different members, or one of them twice"),
+                "name at least two design variables, each once",
+            ));
+        }
+        if members.iter().any(|v| of(v).quantity != of(&members[0]).quantity) {
+            return Err(RequestError::invalid(
+                format!("the members of group `{name}` have different units"),
+                "make a group of each quantity",
+            ));
+        }
+        if let Some(other) = members.iter().find(|v| !variables.contains(v)) {
+            return Err(RequestError::invalid(
+                format!("`{}` of group `{name}` is not fitted", of(other).name),
+                "fit it too, or remove it from the group",
+            ));
+        }
+        if !(*within > 0.0 && within.is_finite()) {
+            return Err(RequestError::invalid(
+                format!("the standard deviation within group `{name}` is not positive"),
+                "give a number above zero",
+            ));
+        }
+        found.retain(|old| old.name != *name);
+        found.push(group.clone());
     }
     Ok(found)
 }
