@@ -609,7 +609,7 @@ time = { end = 1, steps = 10 }
         }
     }
     // Without the second force it vanishes, whatever the first force is.
-    let text = text.replace("e = 1", "e = 0, swing = 100").replace("force = 100", "force = \"swing\"");
+    let text = text.replace("e = 1 }", "e = 0, swing = 100 }").replace("force = 100", "force = \"swing\"");
     for steps in [7, 10, 40, 200] {
         let file = parsed(&text.replace("steps = 10", &format!("steps = {steps}")));
         let found = metrics(&file.model, &Analysis::new(&file.model).unwrap().run());
