@@ -7,7 +7,7 @@ use std::time::Duration;
 use hardpoint::Analysis;
 use hardpoint::model::Model;
 use hardpoint::motion::StopKind;
-use hardpoint::run::{ClearanceProof, Clearances, MinimumPlace, PairClearance};
+use hardpoint::run::{ClearanceProof, Clearances, MetricValue, MinimumPlace, PairClearance};
 use hardpoint_file::{parse, parse_with};
 use serde_json::Value;
 
@@ -1289,6 +1289,100 @@ fn a_spike_on_a_strip_that_is_as_far_at_all_output_times_is_nearest_where_it_pas
             assert!(!pair.is_constant, "{what}");
             assert_near(least.distance[0] * 1e3, 5.0 - 3.0 - 1.0, &what);
             assert_metric(&model, &format!("{name}.min"), pair, &what);
+        }
+    }
+}
+
+/// Two rods whose cores cross while one of them passes the other, and a ball on its way between two others.
+const CROSSING: &str = r#"
+name = "c"
+units = { length = "mm", angle = "deg" }
+time = { end = 1.0, steps = 100 }
+hardpoints = { O = [0, 0, 0], E = [0, -30, 0], L = [-10, 3, 0], R = [23, 1, 0] }
+bodies = { a = {}, b = {} }
+[joints]
+s = { type = "translational", bodies = ["ground", "a"], at = "O", axis = "x" }
+t = { type = "translational", bodies = ["ground", "b"], at = "O", axis = "x" }
+[drivers]
+m = { joint = "s", law = "-20+50*t+8*sin(3*t)" }
+n = { joint = "t", law = "12*sin(7*t)" }
+[shapes]
+rod = { body = "a", capsule = [[0, 0, -30], [0, 0, 30]], radius = 2 }
+bar = { body = "ground", capsule = ["E", [0, 30, 0.5]], radius = 3 }
+ball = { body = "b", sphere = "O", radius = 1 }
+l = { body = "ground", sphere = "L", radius = 1 }
+r = { body = "ground", sphere = "R", radius = 1 }
+middle = { body = "ground", sphere = "O", radius = 1 }
+[clearances]
+c = { between = ["rod", "bar"] }
+k = { between = ["ball", "middle"] }
+g = { between = ["ball", ["l", "r"]] }
+gl = { between = ["ball", "l"] }
+gr = { between = ["ball", "r"] }
+[measures]
+x = { type = "coordinate", joint = "t" }
+z = { type = "expression", expression = "-c" }
+h = { type = "expression", expression = "min(gl, gr)" }
+[metrics]
+c_in = { of = "c", take = "min", window = [0.2, 0.5] }
+z_max = { of = "z", take = "max" }
+k_in = { of = "k", take = "min", window = [0.3, 0.6] }
+g_max = { of = "g", take = "max" }
+g_range = { of = "g", take = "range" }
+g_in = { of = "g", take = "max", window = [0.05, 0.4] }
+g_over = { of = "g", take = "max", over = "x", window = [3, 11] }
+h_max = { of = "h", take = "max" }
+[design]
+E_x = { move = "E", along = "x" }
+L_x = { move = "L", along = "x" }
+"#;
+
+fn crossing(steps: usize) -> (Model, Vec<MetricValue>) {
+    let model = model_of(&CROSSING.replace("steps = 100", &format!("steps = {steps}")));
+    let solution = Analysis::new(&model).unwrap().run();
+    let values = hardpoint::run::metrics(&model, &solution);
+    (model, values)
+}
+
+#[test]
+fn metrics_where_cores_meet_are_those_of_the_cores_without_derivatives_at_any_output_times() {
+    for steps in [1, 2, 3, 5, 7, 10, 37, 100] {
+        let (model, values) = crossing(steps);
+        let of = |name: &str| &values[model.metrics.iter().position(|m| m.name == name).unwrap()];
+        let cases = [("c.min", -5.0), ("c_in", -5.0), ("z_max", 5.0), ("k.min", -2.0), ("k_in", -2.0)];
+        for (name, expected) in cases {
+            let found = of(name);
+            let what = format!("{name}, {steps} steps: {found:?}");
+            assert!((1e3 * found.value.unwrap() - expected).abs() < 1e-7, "{what}");
+            assert!(found.error.is_none(), "{what}");
+            // No variable moves the ball that passes through the middle.
+            let d = found.d[model.variable("E_x").unwrap().0];
+            assert!(d.is_nan() || name.starts_with('k'), "{what}");
+        }
+    }
+}
+
+#[test]
+fn the_greatest_clearance_between_two_shapes_has_the_derivative_of_both_at_any_output_times() {
+    // The ball is at x where it is as far from both: (x + 10)^2 + 9 = (23 - x)^2 + 1, and for a moved ball
+    // 2 (x - L) (dx - dL) = -2 (23 - x) dx.
+    let x = (23.0_f64.powi(2) + 1.0 - 109.0) / (2.0 * 33.0);
+    let apart = (23.0 - x).hypot(1.0);
+    let d = -(x + 10.0) * (23.0 - x) / (33.0 * apart);
+    for steps in [1, 2, 3, 5, 10, 37, 2000] {
+        let (model, values) = crossing(steps);
+        let least = model.metrics.iter().position(|m| m.name == "g.min").unwrap();
+        let [least, by_least] = [values[least].value.unwrap(), values[least].d[1]];
+        for (metric, found) in model.metrics.iter().zip(&values) {
+            let (value, by) = match metric.name.as_str() {
+                "g_max" | "g_in" | "g_over" | "h_max" => (apart - 2.0, d),
+                "g_range" => (apart - 2.0 - 1e3 * least, d - by_least),
+                _ => continue,
+            };
+            let what = format!("{}, {steps} steps: {found:?}", metric.name);
+            assert!((1e3 * found.value.unwrap() - value).abs() < 1e-8, "{what}, not {value}");
+            assert!((found.d[1] - by).abs() < 1e-7, "{what}, not {by}");
+            assert!(found.error.is_none(), "{what}");
         }
     }
 }

@@ -104,7 +104,7 @@ impl DistanceGradient {
         shapes: [ShapeId; 2],
         near: &Nearest,
     ) -> Option<Self> {
-        if !near.distance.is_finite() || near.is_tied {
+        if !near.distance.is_finite() || near.is_tied || placed.is_without_direction(shapes, near) {
             return None;
         }
         let features = placed.features(shapes, near);

@@ -53,6 +53,20 @@ impl Nearest {
         self.sign >= 0.0 && (self.points[1] - self.points[0]).norm() <= within
     }
 
+    /// True if the distance is a length between points, lines or circles, which is zero where they meet and greater on
+    /// both sides; false of solids and surfaces, into which it goes on.
+    pub fn is_length(&self) -> bool {
+        let is_of_core = |feature: &Feature| match feature {
+            Feature::Point(_) | Feature::Line | Feature::Circle(_) => true,
+            Feature::Face(_)
+            | Feature::Vertex(_)
+            | Feature::Edge(_)
+            | Feature::EdgePoint(..)
+            | Feature::Facet(_) => false,
+        };
+        self.sign > 0.0 && self.features.iter().all(is_of_core)
+    }
+
     /// Cores that overlap at a point, with no known way out.
     pub(super) fn overlapping(self, at: Vec3) -> Self {
         Self { points: [at; 2], distance: 0.0, sign: 0.0, ..self }

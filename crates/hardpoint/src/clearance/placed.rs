@@ -15,6 +15,9 @@ use super::surface::{View, core_and_surface, moved, surfaces};
 /// The pair of a clearance whose shapes are nearest, and where they are; `None` if the clearance has no pairs.
 pub(crate) type NearestPair = Option<(usize, Nearest)>;
 
+/// Distance of two points that coincide, as a fraction of the mechanism's size: round-off of solved positions.
+const MEETS: f64 = 1e-10;
+
 /// The shapes of a model where its bodies are.
 pub(crate) struct PlacedShapes<'a, T, B: ?Sized = [Pose<T>]> {
     pub model: &'a Model,
@@ -185,7 +188,18 @@ impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
             let distance = self.changes(shapes) - self.rounds(shapes);
             return distance + T::constant(near.distance - distance.value());
         }
-        near.distance_between(self.features(shapes, near)) - self.rounds(shapes)
+        let apart = near.distance_between(self.features(shapes, near));
+        // No direction leads from one of two points that coincide to the other.
+        let apart = if self.is_without_direction(shapes, near) { apart.without_derivatives() } else { apart };
+        apart - self.rounds(shapes)
+    }
+
+    /// True if the nearest points of two cores coincide, and their distance is a length that is nowhere negative.
+    pub fn is_without_direction(&self, shapes: [ShapeId; 2], near: &Nearest) -> bool {
+        let extends = |(_, by): &(Placed<T>, T)| by.value() != 0.0;
+        near.is_length()
+            && near.cores_meet(MEETS * self.fixed.size)
+            && !self.features(shapes, near).iter().any(extends)
     }
 
     /// A number whose derivatives are zero where the cores of two shapes have the same place and form relative to each

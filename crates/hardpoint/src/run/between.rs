@@ -17,7 +17,7 @@ use crate::motion::mechanism::driver_units;
 
 use super::analysis::Analysis;
 use super::curve::JUST_BEFORE;
-use super::metric::{is_among, unresolved_extrema, unresolved_times, window_times};
+use super::metric::{is_among, unresolved_corners, unresolved_extrema, unresolved_times, window_times};
 use super::needed::{MetricUse, NeededResults};
 use super::request::Progress;
 use super::solution::Solution;
@@ -38,7 +38,7 @@ const PLACES: [f64; 3] = [0.25, 0.5, 0.75];
 const MOST_HALVINGS: u32 = 40;
 /// Maximum number of passes; each adds times nearer to those of the metrics ...
 const MOST_PASSES: usize = 4;
-/// ... and of passes that locate sharp extrema without rates.
+/// ... and of passes that locate kinks, and sharp extrema without rates.
 const MOST_FOR_EXTREMA: usize = 8;
 /// Memory for the motion between output times.
 const BYTES: usize = 128 << 20;
@@ -180,6 +180,7 @@ impl Analysis<'_> {
                     add.extend(unresolved_times(now, metric, finer));
                 }
                 add.extend(unresolved_extrema(now, metric));
+                add.extend(unresolved_corners(now, metric));
             }
             keep_apart(&mut add, &times);
             if add.is_empty() || passes == MOST_FOR_EXTREMA {

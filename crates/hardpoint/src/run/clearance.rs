@@ -339,13 +339,15 @@ impl Analysis<'_> {
         let mut curves = Curves::new(model, &pairs);
         let first = Solution { motion: solution.motion.clone(), ..Solution::default() };
         let (located, _) = self.locate_events(design, first, &mut curves);
-        let minima = located.events.iter().filter(|event| matches!(event.kind, EventKind::Minimum(_)));
-        times.extend(minima.map(|event| event.time));
+        let minima = || located.events.iter().filter(|event| matches!(event.kind, EventKind::Minimum(_)));
+        times.extend(minima().map(|event| event.time));
         sort_times(&mut times);
         let known = &solution.motion.times;
         let same = SAME_TIME * known.last().zip(known.first()).map_or(0.0, |(last, first)| last - first);
         times.dedup_by(|a, b| *a - *b <= same);
         times.retain(|t| !known.iter().any(|other| (t - other).abs() <= same));
+        // The derivative at a kink is that of both of its sides.
+        times.extend(minima().filter_map(|event| Some([event.time, event.kink?])).flatten());
         (measures, times)
     }
 
@@ -469,13 +471,17 @@ impl Analysis<'_> {
 }
 
 /// Per output time and clearance of a motion of the nominal design, time by time: true where other features of the
-/// nearest shapes are as deep in each other. The distance has no derivatives there, unless the shapes do not move
-/// relative to each other.
+/// nearest shapes are as deep in each other, or their cores meet. The distance has no derivatives there, unless the
+/// shapes do not move relative to each other.
 pub fn tied_clearances(model: &Model, motion: &Motion) -> Vec<bool> {
     let fixed = DesignMap::of(model).fixed(&model.whole(&[])).map(Jet::constant);
     let mut tied = Vec::new();
     PosedMotion { model, motion, fixed }.each(0..motion.len(), |_, placed| {
-        let is_tied = |c: usize| placed.nearest_pair(ClearanceId(c)).is_some_and(|(_, near)| near.is_tied);
+        let is_tied = |c: usize| {
+            let nearest = placed.nearest_pair(ClearanceId(c));
+            let shapes = |n: usize| model.clearances[c].pairs[n].shapes;
+            nearest.is_some_and(|(n, near)| near.is_tied || placed.is_without_direction(shapes(n), &near))
+        };
         tied.extend((0..model.clearances.len()).map(is_tied));
     });
     tied

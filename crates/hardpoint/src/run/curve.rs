@@ -31,6 +31,15 @@ pub(super) struct Vertex<T> {
     pub(super) errors: Option<[f64; 2]>,
 }
 
+/// Estimate of a kink between two times, at which a curve has an extremum.
+pub(super) struct CornerEstimate {
+    pub(super) time: f64,
+    /// Value where the tangents at both times meet.
+    pub(super) value: f64,
+    /// This time, times beside it, between which it most likely is, and the middle of the interval.
+    pub(super) around: [f64; 6],
+}
+
 /// The polynomial of a curve in one interval.
 pub(super) struct Polynomial<T> {
     from: f64,
@@ -265,6 +274,90 @@ impl<T: Real> SampledCurve<'_, T> {
         let c = number::each(&c, |c| c.value());
         let rate = [c[1], 2.0 * c[2], 3.0 * c[3], 4.0 * c[4], 5.0 * c[5]];
         roots(&rate).into_iter().map(|s| from + s * length).collect()
+    }
+
+    /// True if a maximum (sign 1) or minimum (-1) in interval k is a kink as far as its ends show: the slope changes its
+    /// sign there, by more than the accelerations at both ends account for.
+    pub(super) fn has_corner(&self, k: usize, sign: f64) -> bool {
+        if !(self.orders == 3 || self.is_located) || self.fold(k).is_some() {
+            return false;
+        }
+        let [a, b] = number::both([k, k + 1], |end| number::each(&self.values[end], |x| x.value()));
+        let bend = (self.times[k + 1] - self.times[k]) * a[2].abs().max(b[2].abs());
+        let is_known = (a[2] - b[2]).is_finite();
+        is_known && sign * a[1] > 0.0 && sign * b[1] < 0.0 && (a[1] - b[1]).abs() > BENT * bend
+    }
+
+    /// True if the ends of interval k are so near each other that a kink between them is located.
+    pub(super) fn is_at_corner(&self, k: usize) -> bool {
+        let run = self.times[self.values.len() - 1] - self.times[0];
+        self.times[k + 1] - self.times[k] <= AT_CORNER * run
+    }
+
+    /// Value and solved time of the maximum (sign 1) or minimum (-1) at a kink that is located in interval k.
+    ///
+    /// ```text
+    /// y_b  =  part y_1b + (1 - part) y_2b,      part = y_2. / (y_2. - y_1.)                          as in (62)
+    /// ```
+    pub(super) fn corner(&self, k: usize, sign: f64) -> Option<(T, f64)> {
+        if !self.is_at_corner(k) || !self.has_corner(k, sign) {
+            return None;
+        }
+        let [a, b] = [self.values[k], self.values[k + 1]];
+        let number = |end: usize| self.values[end][0].value();
+        let [rise, from, to] = [number(k + 1) - number(k), a[1].value(), b[1].value()];
+        let h = self.times[k + 1] - self.times[k];
+        let round_off = AT_CORNER * (number(k).abs() + number(k + 1).abs());
+        if !(rise.abs() <= h * (from.abs() + to.abs()) + round_off) {
+            // The value jumps.
+            return None;
+        }
+        // The tangents meet beyond both values, within the interval.
+        let later = ((rise - h * to) / (from - to)).clamp(0.0, h);
+        let part = to / (to - from);
+        let mixed = T::constant(part) * a[0] + T::constant(1.0 - part) * b[0];
+        let value = number(k) + from * later;
+        let time = self.times[if sign * rise > 0.0 { k + 1 } else { k }];
+        Some((mixed + T::constant(value - mixed.value()), time))
+    }
+
+    /// Values and times of the extrema inside interval k. The derivative of one next to a kink that is not located is
+    /// unknown: `sign` is 1 for maxima, -1 for minima.
+    pub(super) fn extrema(&self, k: usize, sign: f64) -> Vec<(T, f64)> {
+        let is_smooth = !self.has_corner(k, sign);
+        if !is_smooth && self.is_at_corner(k) {
+            return self.corner(k, sign).into_iter().collect();
+        }
+        let turns = self.turns(k).into_iter();
+        let value = |t: f64| {
+            let value = self.at(k, T::constant(t))[0];
+            if is_smooth { value } else { T::constant(value.value()) + unknown_change(value) }
+        };
+        turns.map(|t| (value(t), t)).collect()
+    }
+
+    /// Estimate of the kink in interval k: the parabolas with the values, rates and accelerations of both ends meet
+    /// there.
+    pub(super) fn corner_estimate(&self, k: usize) -> CornerEstimate {
+        let [a, b] = number::both([k, k + 1], |end| number::each(&self.values[end], |x| x.value()));
+        let (from, h) = (self.times[k], self.times[k + 1] - self.times[k]);
+        let tangents = ((b[0] - a[0] - h * b[1]) / (a[1] - b[1])).clamp(0.0, h);
+        let mut u = tangents;
+        for _ in 0..3 {
+            let v = u - h;
+            let apart = a[0] - b[0] + u * (a[1] + 0.5 * u * a[2]) - v * (b[1] + 0.5 * v * b[2]);
+            u = (u - apart / (a[1] - b[1] + u * a[2] - v * b[2])).clamp(0.0, h);
+        }
+        let least = 0.3 * AT_CORNER * (self.times[self.values.len() - 1] - self.times[0]);
+        let moved = (u - tangents).abs();
+        // The error of the parabolas is to that of the tangents about as that is to the interval.
+        let [near, far] = [(4.0 * moved * moved / h).max(least), moved.max(0.01 * h)];
+        let around = [u - far, u - near, u, u + near, u + far, 0.5 * h];
+        CornerEstimate {
+            time: from + u,
+            value: a[0] + a[1] * tangents,
+            around: around.map(|u| from + u.clamp(0.0, h)),
+        }
     }
 
     /// Upper bound of the polynomial of interval k times `sign`: the largest of its Bernstein coefficients.
@@ -539,6 +632,11 @@ pub(super) fn unknown_change<T: Real>(by: T) -> T {
 const JUMP: f64 = 1e-6;
 /// Factor of the rates in an interval above which the change of the rate by an acceleration is not resolved there.
 const UNRESOLVED: f64 = 1e3;
+
+/// Change of the rate in an interval beyond which it has a kink, as a multiple of that by the accelerations at its ends.
+const BENT: f64 = 2.0;
+/// Interval, as a fraction of the run, in which a kink is located.
+pub(super) const AT_CORNER: f64 = 1e-11;
 
 /// Binomial coefficients C(n, k).
 const CHOOSE: [[f64; 5]; 5] = [

@@ -4,7 +4,8 @@
 //! polynomials with the values, rates and accelerations at both ends.
 
 use super::curve::{
-    SampledCurve, THERE, Vertex, WidePolynomial, abscissa_at, along, apart, crossings, unknown_change,
+    AT_CORNER, CornerEstimate, SampledCurve, THERE, Vertex, WidePolynomial, abscissa_at, along, apart,
+    crossings, unknown_change,
 };
 use super::quadrature::{PathIntegral, coarse_middles, path_error, path_nodes, travel};
 use super::solution::Solution;
@@ -128,9 +129,9 @@ fn metric_value(model: &Model, solution: &Solution, metric: &Metric) -> MetricVa
     };
     let resolved = !hidden
         && unresolved_extrema(solution_of(solution), metric).is_empty()
+        && unresolved_corners(solution_of(solution), metric).is_empty()
         && (solution.between.is_some() || is_located)
         && unresolved_times(solution_of(solution), metric, true).is_empty();
-    let error = if resolved { None } else { interpolation_error(metric, &y, &x, value, time) };
     let range = match metric.take {
         Reduction::Slope(_) => value.abs(),
         Reduction::Integral => range_of(&y) * travel(metric, &y, &x),
@@ -143,6 +144,10 @@ fn metric_value(model: &Model, solution: &Solution, metric: &Metric) -> MetricVa
         | Reduction::RmsAtPoints(_)
         | Reduction::Value(_) => range_of(&y),
     };
+    let error = if resolved { None } else { interpolation_error(metric, &y, &x, value, time) };
+    // Next to a kink that is not located, polynomials of several intervals are off by far more than the curve changes.
+    let is_extremum = !signs(&metric.take).is_empty();
+    let error = error.map(|error| if is_extremum { error.min(range) } else { error });
     MetricValue {
         value: Some(value),
         time,
@@ -264,6 +269,38 @@ pub(crate) fn unresolved_extrema(solution: &Solution, metric: &Metric) -> Vec<f6
     signs.iter().flat_map(|sign| unresolved_vertices(metric, &y, &x, *sign, range)).collect()
 }
 
+/// Times that an extremum of a curve with rates needs in addition where it is a kink: times between which the kink is.
+pub(crate) fn unresolved_corners(solution: &Solution, metric: &Metric) -> Vec<f64> {
+    let signs = signs(&metric.take);
+    let has_rates = column(&solution.measured, metric.of).is_some_and(|(_, orders, _)| orders > 1);
+    if signs.is_empty() || !has_rates {
+        return Vec::new();
+    }
+    let Some((y, x)) = curves_at(solution, metric).filter(|(y, _)| !y.is_located) else { return Vec::new() };
+    signs.iter().flat_map(|sign| times_at_corners(metric, &y, &x, *sign)).collect()
+}
+
+fn times_at_corners(
+    metric: &Metric,
+    y: &SampledCurve<'_, f64>,
+    x: &Option<SampledCurve<'_, f64>>,
+    sign: f64,
+) -> Vec<f64> {
+    let intervals = 0..y.values.len().saturating_sub(1);
+    let corners: Vec<usize> = intervals.filter(|k| y.has_corner(*k, sign) && !y.is_at_corner(*k)).collect();
+    if corners.is_empty() {
+        return Vec::new();
+    }
+    let counts = |k: &usize| within_window(metric, abscissa_at(y, x, *k));
+    let solved = (0..y.values.len()).filter(counts).map(|k| sign * y.values[k][0]);
+    let far_out = solved.fold(f64::NEG_INFINITY, f64::max) - ALIKE * range_of(y);
+    let estimates = corners.into_iter().map(|k| (k, y.corner_estimate(k)));
+    let is_extreme = |(k, at): &(usize, CornerEstimate)| {
+        sign * at.value >= far_out && within_window(metric, along(x, *k, at.time))
+    };
+    estimates.filter(is_extreme).flat_map(|(_, at)| at.around).collect()
+}
+
 /// Part of the range of a curve without rates within which all of its extrema are located: in an optimum several are
 /// often equal, and which of them is the largest changes from design to design.
 const NEAR: f64 = 0.1;
@@ -364,7 +401,9 @@ fn far_out_times(
     let mut times: Vec<f64> = (!is_vertex).then_some(time).into_iter().collect();
     if finer {
         let far_out = sign * value - ALIKE * range_of(y);
-        let near = (0..y.values.len() - 1).filter(|k| y.bound(*k, sign) >= far_out);
+        // Kinks are located by times on both sides.
+        let is_smooth = |k: &usize| !y.has_corner(*k, sign);
+        let near = (0..y.values.len() - 1).filter(|k| y.bound(*k, sign) >= far_out).filter(is_smooth);
         let turns = near.flat_map(|k| y.turns(k).into_iter().map(move |t| (k, t)));
         let turns = turns.filter(|(k, t)| within_window(metric, along(x, *k, *t)));
         let cuts = metric.window.into_iter().flatten().flat_map(|end| crossings(y, x, end));
@@ -385,8 +424,11 @@ pub(super) fn derivative_times(solution: &Solution, metric: &Metric) -> Option<V
         let [first, after] = [times.partition_point(|t| *t < time), times.partition_point(|t| *t <= time)];
         let is_time = y.is_located || (y.orders == 1 && y.values.len() < 3);
         let last = y.values.len() - 1;
+        let run = times[last] - times[0];
+        // The derivative at a kink is that of both of its sides.
+        let is_beside = |k: &usize| (times[*k] - time).abs() <= AT_CORNER * run;
         Some(if is_time && metric.window.is_none() {
-            (first..after).collect()
+            (first.saturating_sub(1)..=usize::min(after, last)).filter(is_beside).collect()
         } else if y.orders == 1 {
             (first.saturating_sub(2)..=usize::min(after + 1, last)).collect()
         } else {
@@ -565,9 +607,9 @@ pub fn peaks(model: &Model, solution: &Solution, metric: &Metric, sign: f64) -> 
             if !(inside(k) && inside(k + 1)) {
                 return T::constant(sign * least);
             }
-            let mut best = y.values[k][0];
-            let turns = if y.orders == 1 { Vec::new() } else { y.turns(k) };
-            let turns = turns.into_iter().map(|t| y.at(k, T::constant(t))[0]);
+            let mut best = y.corner(k, sign).map_or(y.values[k][0], |(value, _)| value);
+            let turns = if y.orders == 1 { Vec::new() } else { y.extrema(k, sign) };
+            let turns = turns.into_iter().map(|(value, _)| value);
             let vertices = y.vertices(k..k + 2, sign);
             let vertices = vertices.filter(|v| y.times[k] <= v.time && v.time <= y.times[k + 1]);
             for other in turns.chain(vertices.map(|v| v.value)).chain([y.values[k + 1][0]]) {
@@ -846,6 +888,12 @@ fn extreme<T: Real>(
         }
     };
     let last = y.values.len() - 1;
+    // Before the ends of their intervals, which have the derivative of one side.
+    for (value, t) in (0..last).filter_map(|k| y.corner(k, sign)) {
+        if inside(along(y.interval(t), t)) {
+            offer(value, t);
+        }
+    }
     let counts = |k: usize| inside(x.as_ref().map_or(y.times[k], |x| x.values[k][0].value()));
     let at_times = (0..=last).filter(|k| counts(*k)).map(|k| sign * y.values[k][0].value());
     let most = at_times.fold(f64::NEG_INFINITY, f64::max);
@@ -858,9 +906,9 @@ fn extreme<T: Real>(
         if k == last || y.orders == 1 || y.bound(k, sign) <= most {
             continue;
         }
-        for turn in y.turns(k) {
+        for (value, turn) in y.extrema(k, sign) {
             if inside(along(k, turn)) {
-                offer(y.at(k, T::constant(turn))[0], turn);
+                offer(value, turn);
             }
         }
     }
