@@ -1387,6 +1387,36 @@ fn the_greatest_clearance_between_two_shapes_has_the_derivative_of_both_at_any_o
     }
 }
 
+#[test]
+fn a_slot_that_passes_a_rod_between_two_times_is_where_the_rod_is_farthest() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("strip.toml");
+    let slot = "v -500 -5 -40\nv 31 -5 -40\nv 31 -5 40\nv -500 -5 40\nv 33 -5 -40\nv 500 -5 -40\nv 500 -5 40\n\
+                v 33 -5 40\nf 1 3 2\nf 1 4 3\nf 5 7 6\nf 5 8 7\n";
+    std::fs::write(folder.path().join("strip.obj"), slot).unwrap();
+    let metrics = "[metrics]\nmost = { of = \"fixed\", take = \"max\" }\nrange = { of = \"fixed\", take = \"range\" }\n\
+                   inside = { of = \"fixed\", take = \"max\", window = [0.2, 0.5] }\n[design]";
+    for steps in [1, 3, 7, 10, 37, 400] {
+        let text = SPIKE.replace("steps = 37", &format!("steps = {steps}")).replace("[design]", metrics);
+        std::fs::write(&path, text).unwrap();
+        let model = hardpoint_file::read(&path).unwrap_or_else(|e| panic!("{e}")).model;
+        let values = hardpoint::run::metrics(&model, &Analysis::new(&model).unwrap().run());
+        // Midway between both edges the rod is 5 mm above and 1 mm beside each.
+        let most = 5.0_f64.hypot(1.0) - 1.0;
+        for (metric, found) in model.metrics.iter().zip(&values) {
+            let (value, by) = match metric.name.as_str() {
+                "most" | "inside" => (most, 5.0 / (most + 1.0)),
+                "range" => (most - 4.0, 5.0 / (most + 1.0) - 1.0),
+                _ => continue,
+            };
+            let what = format!("{}, {steps} steps: {found:?}", metric.name);
+            assert!((1e3 * found.value.unwrap() - value).abs() < 1e-7, "{what}, not {value}");
+            assert!((found.d[0] - by).abs() < 1e-6, "{what}, not {by}");
+            assert!(found.error.is_none_or(|error| error < 1e-9), "{what}");
+        }
+    }
+}
+
 /// A gear with 50 turns of its second shaft per turn of the first, and a screw with 40 turns over its way: an arm on
 /// each passes through a pin once per turn.
 #[test]

@@ -168,6 +168,7 @@ impl Analysis<'_> {
             if located.is_none() {
                 let (measures, minima) = self.locate_minima(&design.values, now);
                 add = minima;
+                add.extend(self.hidden_extrema(&design.values, now));
                 located = Some(measures);
             }
             // Minima have a pass of their own.

@@ -5,10 +5,10 @@
 
 use crate::clearance::{ChangingBodies, MovingBodies, PlacedShapes};
 use crate::design::{BodyFixed, DesignMap, ShapeGeometry};
-use crate::measure::clearance_of;
+use crate::measure::{clearance_of, clearances_of};
 use crate::model::{
-    BodyId, Clearance, ClearanceId, Model, OutputSource, PointId, Reduction, Shape, ShapeId, ShapeKind,
-    ShapePair,
+    BodyId, Clearance, ClearanceId, Metric, Model, OutputSource, PointId, Reduction, Shape, ShapeId,
+    ShapeKind, ShapePair,
 };
 use crate::motion::{BodyState, Motion, Stop, StopKind};
 use crate::number::{Dual, Jet, Rates};
@@ -16,7 +16,7 @@ use crate::space::Vec3;
 
 use super::curve::SampledCurve;
 use super::joint_limits::MovingEnd;
-use super::metric::reaches;
+use super::metric::{reaches, signs};
 use super::{Analysis, Run, Solution};
 
 /// A minimum or contact is located if a step of Newton's method is below this fraction of the motion: positions are
@@ -317,8 +317,8 @@ impl Analysis<'_> {
         let posed = PosedMotion::of(self, design, &solution.motion);
         let (mut measures, mut pairs, mut times) = (Vec::new(), Vec::new(), Vec::new());
         for metric in &model.metrics {
-            let Some(of) = clearance_of(model, metric.of) else { continue };
-            if metric.take != Reduction::Least || metric.window.is_some() || measures.contains(&metric.of) {
+            let Some(of) = clearance_of(model, metric.of).filter(|_| is_locatable(metric)) else { continue };
+            if measures.contains(&metric.of) {
                 continue;
             }
             let own = || model.clearances[of.0].pairs.iter().map(|pair| pair.shapes);
@@ -349,6 +349,64 @@ impl Analysis<'_> {
         // The derivative at a kink is that of both of its sides.
         times.extend(minima().filter_map(|event| Some([event.time, event.kink?])).flatten());
         (measures, times)
+    }
+
+    /// Times between those of a solution at which clearances of surfaces have a greatest or least value that its times
+    /// do not show, since other parts of them pass each other: for metrics other than the least values that
+    /// [`locate_minima`](Self::locate_minima) locates. Of an expression over clearances they are those of the
+    /// clearances themselves.
+    pub(super) fn hidden_extrema(&self, design: &[f64], solution: &Solution) -> Vec<f64> {
+        let model = self.model();
+        let mut found = Vec::new();
+        for metric in &model.metrics {
+            let direct = clearance_of(model, metric.of);
+            let signs: &[f64] = match signs(&metric.take) {
+                [] => continue,
+                [-1.0] if direct.is_some() && is_locatable(metric) => continue,
+                signs if direct.is_some() => signs,
+                _ => &[1.0, -1.0],
+            };
+            let window = metric.window.filter(|_| metric.over.is_none());
+            for clearance in clearances_of(model, metric.of) {
+                let pairs: Vec<_> = model.clearances[clearance.0].pairs.iter().map(|p| p.shapes).collect();
+                if pairs.iter().any(|shapes| has_surface(model, *shapes)) {
+                    let times = |sign: &f64| self.hidden_extremum(design, solution, &pairs, *sign, window);
+                    found.extend(signs.iter().flat_map(times));
+                }
+            }
+        }
+        sort_times(&mut found);
+        found
+    }
+
+    /// Times about the greatest (sign 1) or least (-1) value of the least distance of pairs within a window, if it is
+    /// beyond those at the times of a solution.
+    fn hidden_extremum(
+        &self,
+        design: &[f64],
+        solution: &Solution,
+        pairs: &[[ShapeId; 2]],
+        sign: f64,
+        window: Option<[f64; 2]>,
+    ) -> Vec<f64> {
+        let known = &solution.motion.times;
+        let mut curves = Curves::new(self.model(), pairs);
+        curves.add(self, design, &solution.motion);
+        for _ in 0..MOST_PASSES {
+            let add = curves.hidden(sign, window);
+            if add.is_empty() || self.is_ended() {
+                break;
+            }
+            let mut times: Vec<f64> = curves.times.iter().take(1).chain(&add).copied().collect();
+            sort_times(&mut times);
+            curves.add(self, design, &self.motion_at(&times, design, false).motion);
+        }
+        // All times of the interval of the solution that has it.
+        let Some(extremum) = curves.extremum(sign, window) else { return Vec::new() };
+        let time = curves.times[extremum];
+        let after = known.partition_point(|t| *t <= time);
+        let [from, to] = [known[after.saturating_sub(1)], known[usize::min(after, known.len() - 1)]];
+        curves.times.iter().copied().filter(|t| from < *t && *t < to).collect()
     }
 
     fn motion_at(&self, times: &[f64], design: &[f64], sensitivities: bool) -> Solution {
@@ -621,6 +679,11 @@ impl<'m> PosedMotion<'m> {
     }
 }
 
+/// True if a metric of a clearance is its least value over the whole motion.
+fn is_locatable(metric: &Metric) -> bool {
+    metric.take == Reduction::Least && metric.window.is_none()
+}
+
 /// True if one of two shapes is a surface or a ring, which may have several parts that are near the other shape.
 fn has_surface(model: &Model, shapes: [ShapeId; 2]) -> bool {
     let is_concave =
@@ -711,15 +774,57 @@ impl<'m> Curves<'m> {
             if h <= NARROW * span || at_least >= least || !(from[0] > 0.0 && to[0] > 0.0) || is_left_out(k) {
                 continue;
             }
-            // Accelerations at both ends of the cubic polynomial through distances and rates there.
-            let rise = 6.0 * (to[0] - from[0]) / h;
-            let bends = [(rise - 4.0 * from[1] - 2.0 * to[1]) / h, (4.0 * to[1] + 2.0 * from[1] - rise) / h];
-            let error = (bends[0] - from[2]).abs().max((bends[1] - to[2]).abs()) * h * h;
+            let error = cubic_error([from, to], h);
             if speed * h > PASSING * radius || !(error <= SMOOTH * speed * h) {
                 add.extend(pieces(times[k], times[k + 1]));
             }
         }
         add
+    }
+
+    /// Index of the time at which the least distance of all pairs is greatest (sign 1) or least (-1) in a window.
+    fn extremum(&self, sign: f64, window: Option<[f64; 2]>) -> Option<usize> {
+        let inside = |k: &usize| window.is_none_or(|[from, to]| (from..=to).contains(&self.times[*k]));
+        let value = |k: usize| sign * self.least(k)[0];
+        let known = (0..self.times.len()).filter(inside).filter(|k| value(*k).is_finite());
+        known.reduce(|a, b| if value(b) > value(a) { b } else { a })
+    }
+
+    /// The least distance of all pairs at time k.
+    fn least(&self, k: usize) -> [f64; 3] {
+        let distances = self.samples.iter().map(|samples| samples[k].distance);
+        distances.reduce(|a, b| if b[0] < a[0] { b } else { a }).unwrap_or([f64::NAN; 3])
+    }
+
+    /// Times within intervals in which the least distance of all pairs may be greater (sign 1) or less (-1) than at any
+    /// time so far in a window, since other parts of surfaces may pass each other there.
+    fn hidden(&self, sign: f64, window: Option<[f64; 2]>) -> Vec<f64> {
+        let (times, Some(extremum)) = (&self.times, self.extremum(sign, window)) else { return Vec::new() };
+        let most = sign * self.least(extremum)[0];
+        let span = times[times.len() - 1] - times[0];
+        let is_hidden = |k: &usize| {
+            let k = *k;
+            let h = times[k + 1] - times[k];
+            let is_outside = window.is_some_and(|[from, to]| times[k + 1] < from || to < times[k]);
+            if h <= NARROW * span || is_outside {
+                return false;
+            }
+            let reach =
+                |p: usize| Some((self.samples[p].as_slice(), self.reaches[p][k]?, self.reaches[p][k + 1]?));
+            // The distance of each pair changes by no more than its shapes move; the least is none of those above.
+            let bounds = (0..self.pairs.len()).filter_map(reach).map(|(samples, before, after)| {
+                let way = SPEEDS * h * before.speed.max(after.speed);
+                let ends = samples[k].distance[0] + samples[k + 1].distance[0];
+                (0.5 * (ends + sign * way), way, after.radius)
+            });
+            let Some((bound, way, radius)) = bounds.reduce(|a, b| if b.0 < a.0 { b } else { a }) else {
+                return false;
+            };
+            let error = cubic_error([self.least(k), self.least(k + 1)], h);
+            sign * bound > most && (way > PASSING * radius || !(error <= SMOOTH * way))
+        };
+        let hidden = (0..times.len() - 1).filter(is_hidden);
+        hidden.flat_map(|k| pieces(times[k], times[k + 1])).collect()
     }
 
     /// Parts of the motion in which the distance of a pair does not change: of a rod through a plate for example, which
@@ -1000,6 +1105,15 @@ impl<'m> Curves<'m> {
         located.events.extend(events);
         located.add.extend(add);
     }
+}
+
+/// Difference of a distance in an interval of this length from the cubic polynomial through distances and rates at its
+/// ends.
+fn cubic_error([from, to]: [[f64; 3]; 2], h: f64) -> f64 {
+    // Accelerations of the polynomial at both ends.
+    let rise = 6.0 * (to[0] - from[0]) / h;
+    let bends = [(rise - 4.0 * from[1] - 2.0 * to[1]) / h, (4.0 * to[1] + 2.0 * from[1] - rise) / h];
+    (bends[0] - from[2]).abs().max((bends[1] - to[2]).abs()) * h * h
 }
 
 /// Times within intervals in which a body with these speeds at their ends, rad/s, turns far.

@@ -193,7 +193,7 @@ pub(crate) fn window_times(metric: &Metric) -> Vec<f64> {
 }
 
 /// Signs of the extrema that a metric is taken of: 1 for a maximum, -1 for a minimum.
-fn signs(take: &Reduction) -> &'static [f64] {
+pub(super) fn signs(take: &Reduction) -> &'static [f64] {
     match take {
         Reduction::Greatest => &[1.0],
         Reduction::Least => &[-1.0],
