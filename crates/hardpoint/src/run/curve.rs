@@ -276,8 +276,8 @@ impl<T: Real> SampledCurve<'_, T> {
         roots(&rate).into_iter().map(|s| from + s * length).collect()
     }
 
-    /// True if a maximum (sign 1) or minimum (-1) in interval k is a kink as far as its ends show: the slope changes its
-    /// sign there, by more than the accelerations at both ends account for.
+    /// True if a maximum (sign 1) or minimum (-1) in interval k is a kink as far as its ends show: the slope changes
+    /// its sign there, by more than the accelerations at both ends account for.
     pub(super) fn has_corner(&self, k: usize, sign: f64) -> bool {
         if !(self.orders == 3 || self.is_located) || self.fold(k).is_some() {
             return false;
@@ -633,7 +633,8 @@ const JUMP: f64 = 1e-6;
 /// Factor of the rates in an interval above which the change of the rate by an acceleration is not resolved there.
 const UNRESOLVED: f64 = 1e3;
 
-/// Change of the rate in an interval beyond which it has a kink, as a multiple of that by the accelerations at its ends.
+/// Change of the rate in an interval beyond which it has a kink, as a multiple of that by the accelerations at both
+/// of its ends.
 const BENT: f64 = 2.0;
 /// Interval, as a fraction of the run, in which a kink is located.
 pub(super) const AT_CORNER: f64 = 1e-11;
