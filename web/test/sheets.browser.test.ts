@@ -1,4 +1,4 @@
-import { writeFileSync } from 'node:fs'
+import { readFileSync, writeFileSync } from 'node:fs'
 import { join } from 'node:path'
 import type { Browser, Page } from 'playwright-core'
 import { afterAll, beforeAll, describe, expect, inject, test } from 'vitest'
@@ -24,10 +24,22 @@ const IMAGES = process.env.UPDATE_DOCS && join(import.meta.dirname, '../../docs/
 const LARGE = { width: 1440, height: 900 }
 const SMALL = { width: 1000, height: 640 }
 
+/** Text of a document. */
+function documented(name: string): string {
+  return readFileSync(join(import.meta.dirname, '../../docs', name), 'utf8')
+}
+
 /** Largest less smallest value, as a share of the largest size. */
 const spread = (values: number[]) => (Math.max(...values) - Math.min(...values)) / Math.max(...values.map(Math.abs))
 /** A quantity that changes by less than this share of its size is as good as constant. */
 const CONSTANT = 1e-9
+
+/** Quantity and abscissa of the first curve of each model, as the documents list them. */
+const OPENINGS = new Map(
+  [...documented('results.md').matchAll(/^\| `(\w+)` \| `([\w.]+)` \| (?:`([\w.]+)`|time) \| .* \|$/gm)].map(
+    ([, model, quantity, over = 'time']) => [model, [quantity, `over ${over}`]],
+  ),
+)
 
 describe('every model', () => {
   let browser: Browser
@@ -73,6 +85,8 @@ describe('every model', () => {
     const varies = (quantity: string) => spread(motion.get(quantity) ?? []) > CONSTANT
     const offered = page.getByTestId('quantity').first().locator('option')
     const first = await offered.and(page.locator(':checked')).innerText()
+    const over = await page.getByTestId('over').first().locator('option:checked').innerText()
+    expect.soft([first, over], 'the first curve').toEqual(OPENINGS.get(name))
     if ((await offered.allInnerTexts()).some(varies))
       expect.soft(varies(first), `${first}, on which it opens, varies`).toBe(true)
     await page.context().close()

@@ -29,6 +29,7 @@ import {
   type Report,
   type Variable,
 } from '../report'
+import { noise } from '../rounding'
 import { hasOneFreedom, onSideOf, rangeOf } from '../sheet'
 import type { State } from '../state'
 import type { Measured } from './measured'
@@ -414,6 +415,7 @@ function atAbscissa(
   const [y, x] = [report.quantities[quantity], report.quantities[over]]
   if (order > 0) return 'Over another quantity, only sensitivities of values are available: choose the value, or time.'
   if (isGiven(x)) return { seen: (curve) => curve, note: `At a constant law of ${x.name}.` }
+  if (isPrescribed(report, x)) return { seen: (curve) => curve, note: '' }
   const keeper = moverOf(report, x.index)
   const alone = keeper?.alone[y.index]?.length ? slopeAlone(keeper.alone[y.index], keeper.alone[x.index]) : undefined
   if (!alone && [y, x].some(({ curves }) => curves[1].length === 0 || curves[2].length === 0)) {
@@ -429,6 +431,12 @@ function atAbscissa(
     seen,
     note: alone && keeper ? `At constant ${x.name}, held by ${keeper.name}; other drivers are fixed.` : '',
   }
+}
+
+/** True if no variable changes the quantity, as of a coordinate that a driver prescribes. */
+function isPrescribed({ variables }: Report, { index, curves }: Quantity): boolean {
+  const largest = noise(peak(curves[0]))
+  return variables.every(({ sensitivities }) => (sensitivities.get(index)?.peaks[0] ?? 0) <= largest)
 }
 
 /** Among several moving drivers, the one that moves the quantity most. */
