@@ -70,6 +70,48 @@ describe('standard views', () => {
   })
 })
 
+describe('the ends of the axes in the corner', () => {
+  const end = (name: string) => page.getByTestId(`axis-${name}`)
+
+  test('are views from six sides, by mouse and keys', async () => {
+    await open('front_axle')
+    const words = ['front', 'rear', 'left', 'right', 'top', 'bottom']
+    const titles = await page.locator('.triad button').evaluateAll((all) => all.map((one) => one.getAttribute('title')))
+    expect(titles).toEqual(words)
+    await end('front').click()
+    await drawn(page)
+    expect(await pressed()).toEqual(['front'])
+    // From below: the wheel that is left from the front is left again, and what is in front is up.
+    await end('bottom').focus()
+    await page.keyboard.press('Enter')
+    await drawn(page)
+    expect(await pressed()).toEqual([])
+    const [front, left] = [await centre('axis-front'), await centre('axis-left')]
+    const [rear, right] = [await centre('axis-rear'), await centre('axis-right')]
+    expect(front.y).toBeLessThan(rear.y - 20)
+    expect(left.x).toBeGreaterThan(right.x + 20)
+  })
+
+  test('are remembered as the other views are', async () => {
+    await open('macpherson')
+    await end('bottom').click()
+    await drawn(page)
+    const place = async () => JSON.stringify([await centre('axis-left'), await centre('axis-front')])
+    const before = await place()
+    await page.getByTestId('open-model').click()
+    await page.locator('.cm-content').click()
+    await page.keyboard.press('Control+f')
+    await page.keyboard.type('strut, BMW')
+    await page.keyboard.press('Enter')
+    await page.keyboard.press('Escape')
+    await page.keyboard.type('another')
+    await page.waitForFunction(() => document.querySelector('[data-testid=title]')!.textContent!.includes('another'))
+    await page.getByTestId('open-model').click()
+    await drawn(page)
+    await expect.poll(place).toBe(before)
+  })
+})
+
 describe('measuring', () => {
   test('shows the distance of two points and the angle of three, at every moment', async () => {
     await open('four_bar')

@@ -49,7 +49,7 @@ export function stage(state: State, pose?: Pose): Stage {
   )
   const press = (seen: Look | undefined) => {
     buttons.forEach((button, k) => button.setAttribute('aria-pressed', String(view.looks[k] === seen)))
-    chooser.value = seen?.name ?? ''
+    chooser.value = seen && view.looks.includes(seen) ? seen.name : ''
   }
   press(view.looks.find(({ name }) => name === view.pose.look))
   view.onLook(press)

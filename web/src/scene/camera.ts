@@ -1,5 +1,6 @@
 import { OrthographicCamera, PerspectiveCamera, Vector3 } from 'three'
 import type { Mechanism } from './mechanism'
+import { directions } from './triad'
 
 export type Camera = PerspectiveCamera | OrthographicCamera
 
@@ -22,6 +23,15 @@ const TOP = 34
 const AHEAD = 0.2
 /** Along `up` left and right are undefined, so views deviate from it by this. */
 const HAIR = 1e-4
+/** One less the cosine of the angle up to which two directions of view are the same. */
+export const STRAIGHT = 1e-6
+
+/** A view along an axis of the triad, from one of its ends. */
+export interface AxisLook {
+  /** `top`, `rear`; `along x` of an axis without such a name. */
+  word: string
+  look: Look
+}
 
 /** The views offered, the first of them at the start. */
 export function looksOf(mechanism: Mechanism): Look[] {
@@ -60,6 +70,26 @@ export function looksOf(mechanism: Mechanism): Look[] {
     look('top', 'seen from above, to scale', new Vector3(0, -HAIR, 1), true),
   ]
 }
+
+/** Views from both ends of each axis of the triad; those that are standard views are these. */
+export function axisLooksOf({ vehicle, plane, up }: Mechanism, looks: readonly Look[]): AxisLook[] {
+  const ahead = vehicle?.forward ?? plane?.clone().negate() ?? new Vector3(0, 1, 0)
+  return directions(vehicle).flatMap(({ unit, name }) =>
+    [1, -1].map((sign): AxisLook => {
+      const eye = unit.clone().multiplyScalar(sign)
+      const upright = eye.dot(up)
+      const isUpright = Math.abs(upright) > 1 - STRAIGHT
+      eye.addScaledVector(isUpright ? ahead : up, isUpright ? -HAIR * Math.sign(upright) : HAIR).normalize()
+      const same = looks.find(({ direction, parallel }) => parallel && direction.dot(eye) > 1 - STRAIGHT)
+      const end = isUpright ? (upright > 0 ? 'top' : 'bottom') : ENDS[name]?.[sign > 0 ? 0 : 1]
+      const word = end ?? same?.name ?? `${sign > 0 ? 'against' : 'along'} ${name}`
+      return { word, look: same ?? look(word, `${word}, to scale`, eye, true) }
+    }),
+  )
+}
+
+/** Both ends of a vehicle's axes. */
+const ENDS: Partial<Record<string, [string, string]>> = { front: ['front', 'rear'], left: ['left', 'right'] }
 
 const look = (name: string, title: string, direction: Vector3, parallel = false): Look => ({
   name,

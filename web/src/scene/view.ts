@@ -7,7 +7,17 @@ import { viewSvg } from '../export/view_svg'
 import { number } from '../format'
 import type { State } from '../state'
 import { Assembly } from './assembly'
-import { type Camera, cameraFor, fit, type Look, looksOf, pixelsPerLength, shapeTo } from './camera'
+import {
+  axisLooksOf,
+  type Camera,
+  cameraFor,
+  fit,
+  type Look,
+  looksOf,
+  pixelsPerLength,
+  shapeTo,
+  STRAIGHT,
+} from './camera'
 import { marks, matter } from './draw'
 import { changeText, shownChange } from './draw/design_velocity'
 import { forceText } from './draw/load'
@@ -25,8 +35,6 @@ import { Triad } from './triad'
 
 /** Room round every place that the motion visits, in units. */
 const ROOM = 2
-/** One less the cosine of the angle up to which the camera has the direction of a standard view. */
-const STRAIGHT = 1e-6
 /** Numbers of marks start here, far above those of matter. */
 const MARK_NUMBERS = 1 << 15
 
@@ -51,6 +59,8 @@ export class View {
   readonly canvas: HTMLCanvasElement
   /** The standard views offered; the first is that of the start. */
   readonly looks: readonly Look[]
+  /** These, and the views along the axes. */
+  readonly #all: readonly Look[]
   readonly scene = new Scene()
   /** Camera of the present view: of perspective, or of parallel projection. */
   camera: Camera
@@ -97,8 +107,10 @@ export class View {
 
   constructor(private readonly state: State) {
     this.original = new Mechanism(state.report)
-    this.#triad = new Triad(this.original.vehicle)
     this.looks = looksOf(this.original)
+    const along = axisLooksOf(this.original, this.looks)
+    this.#all = [...this.looks, ...along.map(({ look }) => look)]
+    this.#triad = new Triad(this.original.vehicle, along, ({ name }) => this.look(name))
     this.#look = this.looks[0]
     this.#cameras = [false, true].map((parallel) => cameraFor(this.original, parallel))
     this.camera = this.#cameras[Number(this.#look.parallel)]
@@ -226,7 +238,8 @@ export class View {
   /** Takes the position of another view of the same mechanism. */
   restore(pose: Pose): void {
     const { look, position, target, zoom } = pose
-    this.#look = this.looks.find(({ name }) => name === look) ?? this.looks[0]
+    this.#look = this.#named(look)
+    this.#takeCamera()
     // Without a size there is nothing to fit into yet.
     this.#wanted = this.#extent.width === 0 ? pose : undefined
     if (this.#wanted) return
@@ -241,13 +254,22 @@ export class View {
     this.#draw()
   }
 
-  /** Shows a standard view by its name. */
+  #named(name: string): Look {
+    return this.#all.find((look) => look.name === name) ?? this.looks[0]
+  }
+
+  /** Shows a standard view, or one along an axis, by its name. */
   look(name: string): void {
-    this.#look = this.looks.find((look) => look.name === name) ?? this.looks[0]
-    this.camera = this.#cameras[Number(this.#look.parallel)]
-    this.#controls.object = this.camera
+    this.#look = this.#named(name)
+    this.#takeCamera()
     this.fit()
     this.#reportLook()
+  }
+
+  /** Takes the camera of the present view. */
+  #takeCamera(): void {
+    this.camera = this.#cameras[Number(this.#look.parallel)]
+    this.#controls.object = this.camera
   }
 
   /** Calls back with the standard view that the camera has, or none after it was turned. */
