@@ -5,6 +5,9 @@ import { curveOf, type Design, isGiven, type Order, ORDERS, type Report } from '
 import type { Part } from './scene/drawable'
 import { abscissaNamed, type Sheet, sheetOf } from './sheet'
 
+/** A hardpoint of a body whose path is drawn. */
+export type PathPoint = readonly [body: number, point: number]
+
 export interface Choice {
   quantity: number
   variable: number
@@ -13,8 +16,8 @@ export interface Choice {
   over?: number
   /** Selection in the view: a body, a joint, a wheel, ... */
   selected?: Part
-  /** Body and hardpoint whose path is drawn. */
-  trace?: [body: number, point: number]
+  /** Hardpoints whose paths are drawn. */
+  traces: readonly PathPoint[]
   /** The measured distance that is pointed at, else the selected one: an index into the report's distances. */
   distance?: number
   /** True if hardpoints are named in the view. */
@@ -45,8 +48,8 @@ export interface ChoiceMemory {
   rigid: boolean
   /** Missing in what was stored before there were shapes. */
   shapes?: boolean
-  /** Names of the body and the hardpoint. */
-  trace?: [body: string, point: string]
+  /** Names of bodies and hardpoints; missing in what was stored when there was one path. */
+  traces?: [body: string, point: string][]
   time: number
 }
 
@@ -138,38 +141,53 @@ export class State {
       forces: true,
       shapes: true,
       rigid: true,
+      traces: [],
     }
   }
 
   /** Choices, to be made again on another page. */
   get memory(): ChoiceMemory {
     const { quantities, variables, bodies } = this.report
-    const { quantity, variable, order, over, labels, forces, rigid, shapes, trace } = this.choice
+    const { quantity, variable, order, over, labels, forces, rigid, shapes, traces } = this.choice
     return {
       quantity: quantities[quantity]?.name,
       over: over === undefined ? undefined : quantities[over]?.name,
       variable: variables[variable]?.name,
       ...{ order, labels, forces, rigid, shapes },
-      trace: trace && [bodies[trace[0]].name, bodies[trace[0]].labels[trace[1]]],
+      traces: traces.map(([body, point]) => [bodies[body].name, bodies[body].labels[point]]),
       time: this.time,
     }
   }
 
   /** Makes the choices of another page that are possible here, before anything of this one is shown. */
-  recall({ quantity, over, variable, order, labels, forces, rigid, shapes = true, trace, time }: ChoiceMemory): void {
+  recall({
+    quantity,
+    over,
+    variable,
+    order,
+    labels,
+    forces,
+    rigid,
+    shapes = true,
+    traces = [],
+    time,
+  }: ChoiceMemory): void {
     const { quantities, variables, bodies } = this.report
     const named = (list: readonly { name: string }[], name: string | undefined, otherwise: number) => {
       const found = list.findIndex((one) => one.name === name)
       return found < 0 ? otherwise : found
     }
-    const body = bodies.findIndex(({ name }) => name === trace?.[0])
-    const point = bodies[body]?.labels.indexOf(trace?.[1] ?? '') ?? -1
+    const place = ([of, label]: [string, string]): PathPoint[] => {
+      const body = bodies.findIndex(({ name }) => name === of)
+      const point = bodies[body]?.labels.indexOf(label) ?? -1
+      return point >= 0 ? [[body, point]] : []
+    }
     Object.assign(this.choice, {
       quantity: named(quantities, quantity, this.choice.quantity),
       variable: named(variables, variable, this.choice.variable),
       over: abscissaNamed(this.report, over),
       ...{ order, labels, forces, rigid, shapes },
-      trace: point >= 0 ? [body, point] : undefined,
+      traces: traces.flatMap(place),
     })
     this.step = stepAt(this.report.times, time)
   }

@@ -269,8 +269,15 @@ describe('paths', () => {
 
   test('show where the point is', () => {
     const mechanism = new Mechanism(crank({ drivers: [] }))
-    const [, present] = drawn(mechanism, { trace: [1, 1] })
+    const [, present] = drawn(mechanism, { traces: [[1, 1]] })
     expect(boxOf(mechanism, present, 1).getCenter(new Vector3()).y).toBeCloseTo(200, 3)
+    const both = drawn(mechanism, {
+      traces: [
+        [1, 0],
+        [1, 1],
+      ],
+    })
+    expect(both.filter(({ follow }) => follow).map(({ part }) => part.name)).toEqual(['pivot', 'pin'])
   })
 })
 

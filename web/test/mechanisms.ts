@@ -75,6 +75,7 @@ export const CHOICE: Choice = {
   forces: true,
   rigid: true,
   shapes: true,
+  traces: [],
 }
 
 /** Rotations about z of the crank from one step to the next. */

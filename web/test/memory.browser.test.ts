@@ -57,7 +57,9 @@ async function choose(): Promise<void> {
 /** Further choices in the view. */
 async function look(): Promise<void> {
   await page.getByTestId('look-side').click()
-  await page.getByTestId('trace').selectOption({ label: 'path of tie_rod_outer' })
+  await page.getByTestId('trace').click()
+  for (const point of ['tie_rod_outer', 'ball_joint']) await page.getByTestId(`trace-${point}`).check()
+  await page.keyboard.press('Escape')
   await page.getByTestId('labels').click()
 }
 
@@ -74,7 +76,8 @@ async function chosen() {
 async function looked() {
   return {
     look: await page.getByTestId('look-side').getAttribute('aria-pressed'),
-    trace: await page.getByTestId('trace').locator('option:checked').innerText(),
+    trace: await page.getByTestId('trace').innerText(),
+    traces: await page.getByTestId('traces').locator('input:checked').count(),
     labels: await page.getByTestId('labels').getAttribute('aria-pressed'),
   }
 }

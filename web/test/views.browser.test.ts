@@ -1,7 +1,7 @@
 import type { Page } from 'playwright-core'
 import { describe, expect, inject, test } from 'vitest'
 import { pages } from './pages'
-import { drawn, frames, scrub } from './person'
+import { drawn, frames, picture, scrub } from './person'
 
 const { models } = inject('samples')
 
@@ -112,6 +112,56 @@ describe('the ends of the axes in the corner', () => {
   })
 })
 
+describe('the buttons of the view', () => {
+  const below = async () => {
+    const [head, tops] = await page.evaluate(() => {
+      const box = (one: Element) => one.getBoundingClientRect()
+      const rulers = [...document.querySelectorAll('.ruler-point')].map((one) => (box(one).top + box(one).bottom) / 2)
+      return [box(document.querySelector('.looks')!).bottom, rulers] as const
+    })
+    return Math.min(...tops) - head
+  }
+
+  test('are above the mechanism also where they wrap, after a click on the view as well', async () => {
+    await open('four_bar')
+    // A click on the background is no turn of the view.
+    const box = (await page.getByTestId('view-canvas').boundingBox())!
+    await page.mouse.click(box.x + 20, box.y + 0.5 * box.height)
+    await measure('spot-B')
+    const [wide, height] = [await below(), await rows()]
+    expect(wide).toBeGreaterThan(0)
+    await page.setViewportSize({ width: 760, height: 760 })
+    await drawn(page)
+    expect(await rows()).toBeGreaterThan(height)
+    expect(await below()).toBeGreaterThan(0)
+  })
+  const rows = async () => (await page.locator('.looks').boundingBox())!.height
+})
+
+test('paths of several hardpoints are drawn at once, and one button removes them', async () => {
+  await open('four_bar')
+  const traces = page.getByTestId('traces')
+  const button = page.getByTestId('trace')
+  const bare = await picture(page)
+  await button.click()
+  await page.getByTestId('trace-B').check()
+  await expect.poll(() => button.innerText()).toContain('path of B')
+  await drawn(page)
+  const one = await picture(page)
+  await page.getByTestId('trace-C').check()
+  await expect.poll(() => button.innerText()).toContain('2 paths')
+  await drawn(page)
+  const two = await picture(page)
+  expect(one.equals(bare) || two.equals(one)).toBe(false)
+  await page.getByTestId('trace-none').click()
+  expect(await traces.locator('input:checked').count()).toBe(0)
+  await page.keyboard.press('Escape')
+  expect(await traces.isVisible()).toBe(false)
+  expect(await button.innerText()).toContain('no path')
+  await drawn(page)
+  expect((await picture(page)).equals(bare)).toBe(true)
+})
+
 describe('measuring', () => {
   test('shows the distance of two points and the angle of three, at every moment', async () => {
     await open('four_bar')
@@ -142,6 +192,9 @@ describe('a body that is clicked', () => {
     await page.mouse.click(b.x + 0.3 * (c.x - b.x), b.y + 0.3 * (c.y - b.y))
     const inspector = page.getByTestId('inspector')
     await inspector.waitFor()
+    // It covers no point of the body.
+    const { x, y, width, height } = (await inspector.boundingBox())!
+    for (const at of [b, c]) expect(at.x > x && at.x < x + width && at.y > y && at.y < y + height).toBe(false)
     const text = await inspector.innerText()
     expect(text).toContain('B – C')
     expect(number(/B – C\s+([\d.]+) mm/.exec(text)![1])).toBeCloseTo(Math.hypot(320, 400), 1)

@@ -11,6 +11,17 @@ import type { State } from '../state'
 
 /** With more points than this only neighbours are measured. */
 const ALL_PAIRS = 4
+/** Corners of the view, in the order of preference. */
+interface Corner {
+  isRight: boolean
+  isLow: boolean
+}
+const CORNERS: readonly Corner[] = [false, true].flatMap((isLow) =>
+  [false, true].map((isRight) => ({ isRight, isLow })),
+)
+/** Distance from the edges of the view, and from its top below the buttons, px. */
+const EDGE = 10
+const HEAD = 44
 /** Digits of a coordinate. */
 const DIGITS = 5
 
@@ -52,10 +63,24 @@ export class Inspector {
     this.#fill(el('div', {}, el('p', { class: 'muted' }, selected.about), ...this.#facts(selected)))
     if (selected === this.#shown) return
     this.#shown = selected
-    // On the side where the selection is not.
-    const at = this.#place(selected)
-    const isLeft = at !== undefined && this.view.project(at).x < this.view.element.clientWidth / 2
-    this.element.classList.toggle('right', isLeft)
+    this.#dock(selected)
+  }
+
+  /** Into the corner of the view where it hides least of the motion, and nothing of the selection if that is possible. */
+  #dock(selected: Part): void {
+    const { clientWidth: width, clientHeight: height } = this.view.element
+    const { offsetWidth: wide, offsetHeight: tall } = this.element
+    const moved = this.view.mechanism.sweep.map((place) => this.view.project(place))
+    const chosen = this.#places(selected).map((place) => this.view.project(place))
+    const hidden = ({ isRight, isLow }: Corner) => {
+      const covers = ({ x, y }: { x: number; y: number }) =>
+        (isRight ? x > width - wide - EDGE : x < wide + EDGE) && (isLow ? y > height - tall - EDGE : y < tall + HEAD)
+      const share = (places: { x: number; y: number }[]) => places.filter(covers).length / Math.max(places.length, 1)
+      return share(moved) + 2 * share(chosen)
+    }
+    const { isRight, isLow } = CORNERS.reduce((a, b) => (hidden(b) < hidden(a) ? b : a))
+    this.element.classList.toggle('right', isRight)
+    this.element.classList.toggle('low', isLow)
   }
 
   /** Shows facts, if they are others: a link that is being pressed stays, and so does the focus. */
@@ -66,14 +91,13 @@ export class Inspector {
     if (former) this.#body.querySelector<HTMLElement>(`[data-part="${CSS.escape(former)}"]`)?.focus()
   }
 
-  #place(part: Part): Vector3 | undefined {
+  #places(part: Part): Vector3[] {
     const { mechanism } = this.view
     const { step } = this.state
     const joint = part.kind === 'joint' ? mechanism.report.joints[part.index] : undefined
-    if (joint) return mechanism.worldAt(joint.body_i, new Vector3(...joint.at_i), step)
-    if (part.kind !== 'body') return undefined
-    const points = mechanism.shapePoints(part.index).map((point) => mechanism.worldAt(part.index, point, step))
-    return points.reduce((sum, point) => sum.add(point), new Vector3()).divideScalar(Math.max(1, points.length))
+    if (joint) return [mechanism.worldAt(joint.body_i, new Vector3(...joint.at_i), step)]
+    if (part.kind !== 'body') return []
+    return mechanism.shapePoints(part.index).map((point) => mechanism.worldAt(part.index, point, step))
   }
 
   #facts(part: Part): HTMLElement[] {

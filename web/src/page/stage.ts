@@ -5,6 +5,7 @@ import { hasWebGL, type Pose, View } from '../scene/view'
 import type { State } from '../state'
 import { Inspector } from './inspector'
 import { Measuring } from './measuring'
+import { tracer } from './tracer'
 
 /** The view with its buttons; without WebGL a message, and no view. */
 interface Stage {
@@ -106,25 +107,22 @@ export function stage(state: State, pose?: Pose): Stage {
   sync()
   const measuring = new Measuring(view, state)
   const fit = el('button', { type: 'button', title: 'Fit (F)', 'data-testid': 'fit', onclick: () => view.fit() }, 'fit')
+  const looks = el(
+    'div',
+    { class: 'looks', role: 'toolbar', 'aria-label': 'Standard views' },
+    chooser,
+    ...buttons,
+    fit,
+    labels,
+    forces,
+    shapes,
+    rigid,
+    measuring.button,
+    ...tracer(state),
+  )
+  view.buttons = looks
   view.element.append(
-    el(
-      'div',
-      { class: 'view-head' },
-      ghostKey(state),
-      el(
-        'div',
-        { class: 'looks', role: 'toolbar', 'aria-label': 'Standard views' },
-        chooser,
-        ...buttons,
-        fit,
-        labels,
-        forces,
-        shapes,
-        rigid,
-        measuring.button,
-        tracer(state),
-      ),
-    ),
+    el('div', { class: 'view-head' }, ghostKey(state), looks),
     measuring.overlay,
     new Inspector(view, state).element,
   )
@@ -149,37 +147,4 @@ function ghostKey(state: State): HTMLElement {
   state.onChoice(sync)
   sync()
   return element
-}
-
-/** Chooses the hardpoint whose path is drawn. */
-function tracer(state: State): HTMLElement {
-  const seen = new Set<string>()
-  const select = el(
-    'select',
-    {
-      'data-testid': 'trace',
-      'aria-label': 'Path of a hardpoint',
-      title: 'Path of a hardpoint',
-      onchange: () => {
-        const [body, point] = select.value.split(' ').map(Number)
-        state.choose({ trace: select.value ? [body, point] : undefined })
-      },
-    },
-    el('option', { value: '' }, 'no path'),
-    ...state.report.bodies.slice(1).map((body, index) => {
-      // A point that joins two bodies has one path.
-      const own = body.labels.flatMap((label, point) => (seen.has(label) ? [] : [{ label, point }]))
-      for (const { label } of own) seen.add(label)
-      const option = ({ label, point }: (typeof own)[number]) =>
-        el('option', { value: `${index + 1} ${point}` }, `path of ${label}`)
-      return own.length > 0 && el('optgroup', { label: body.name }, ...own.map(option))
-    }),
-  )
-  const sync = () => {
-    const { trace } = state.choice
-    select.value = trace ? trace.join(' ') : ''
-  }
-  state.onChoice(sync)
-  sync()
-  return select
 }

@@ -16,9 +16,19 @@ export interface Look {
 
 /** Vertical opening of the perspective, in degrees. */
 const OPENING = 22
-/** Margin of the picture, and height of the buttons at its top, in pixels. */
+/** Margin of the picture. */
 const MARGIN = 1.06
+/** Height of a row of buttons at the top of the view, and of the caption at its bottom, px. */
 const TOP = 34
+const BOTTOM = 26
+
+/** Room that buttons and captions take at the top and at the bottom of the view, px. */
+export interface Insets {
+  top?: number
+  bottom?: number
+}
+/** Insets leave at least this part of half the height. */
+const LEAST = 0.1
 /** The eye stays so far before the nearest point, as a part of the mechanism's size. */
 const AHEAD = 0.2
 /** Along `up` left and right are undefined, so views deviate from it by this. */
@@ -108,8 +118,7 @@ export function cameraFor({ up, size }: Mechanism, parallel: boolean): Camera {
 }
 
 /**
- * Puts the camera where all points fill the picture but for that many pixels at its top; the point in their middle, to
- * be turned about.
+ * Puts the camera where all points fill the picture but for the insets; the point in their middle, to be turned about.
  */
 export function fit(
   camera: Camera,
@@ -118,15 +127,15 @@ export function fit(
   { direction }: Look,
   width: number,
   height: number,
-  top = TOP,
+  { top = TOP, bottom = BOTTOM }: Insets = {},
 ): Vector3 {
   camera.position.copy(direction)
   camera.lookAt(0, 0, 0)
   camera.updateMatrixWorld()
   const [right, up, back] = [0, 1, 2].map((k) => new Vector3().setFromMatrixColumn(camera.matrixWorld, k))
   const aspect = width / height
-  // Upper limit of the picture: -1 to 1 is all of it.
-  const ceiling = 1 - (2 * top) / height
+  // Limits of the picture upwards and downwards: 1 is all of it.
+  const [ceiling, floor] = [top, bottom].map((inset) => Math.max(1 - (2 * inset) / height, LEAST))
   const bound = (measure: (x: number, y: number, z: number) => number) =>
     points.reduce(
       (maximum, point) => Math.max(maximum, measure(point.dot(right), point.dot(up), point.dot(back))),
@@ -135,7 +144,7 @@ export function fit(
   const nearest = bound((_, __, z) => z)
   const middle = (nearest - bound((_, __, z) => -z)) / 2
   const tangent = camera instanceof PerspectiveCamera ? Math.tan((camera.fov * Math.PI) / 360) : 0
-  const [sides, above, below] = [(tangent * aspect) / MARGIN, (tangent * ceiling) / MARGIN, tangent / MARGIN]
+  const [sides, above, below] = [aspect, ceiling, floor].map((limit) => (tangent * limit) / MARGIN)
   const [east, west] = [bound((x, _, z) => x + sides * z), bound((x, _, z) => -x + sides * z)]
   const [north, south] = [bound((_, y, z) => y + above * z), bound((_, y, z) => -y + below * z)]
   let centre: [x: number, y: number]
@@ -144,11 +153,11 @@ export function fit(
     distance = Math.max((east + west) / (2 * sides), (north + south) / (above + below), nearest + AHEAD * size)
     centre = [(east - west) / 2, (north - above * distance + below * distance - south) / 2]
   } else {
-    const half = Math.max((north + south) / (1 + ceiling), (east + west) / 2 / aspect, 0.02 * size) * MARGIN
+    const half = Math.max((north + south) / (ceiling + floor), (east + west) / 2 / aspect, 0.02 * size) * MARGIN
     camera.zoom = 1
     camera.userData.half = half
     distance = middle + 4 * size
-    centre = [(east - west) / 2, (north - south) / 2 + ((1 - ceiling) / 2) * half]
+    centre = [(east - west) / 2, (north - south) / 2 + ((floor - ceiling) / 2) * half]
   }
   const target = new Vector3()
     .addScaledVector(right, centre[0])

@@ -94,6 +94,7 @@ export class View {
   #onLook: ((look: Look | undefined) => void)[] = []
   /** True if the reader turned or moved the view since it was fitted. */
   #turned = false
+  #buttons?: HTMLElement
   /** Position to take as soon as the view has a size. */
   #wanted?: Pose
   #stale = false
@@ -123,11 +124,15 @@ export class View {
     this.#renderer.shadowMap.type = PCFShadowMap
     this.#renderer.shadowMap.autoUpdate = false
     this.#controls = new OrbitControls(this.camera, this.canvas)
+    // A click alone leaves the view as it is.
+    let isHeld = false
+    this.#controls.addEventListener('start', () => (isHeld = true))
+    this.#controls.addEventListener('end', () => (isHeld = false))
     this.#controls.addEventListener('change', () => {
+      this.#turned ||= isHeld
       this.#draw()
       this.#reportLook()
     })
-    this.#controls.addEventListener('start', () => (this.#turned = true))
     this.#pointer = new Pointer(
       this.canvas,
       () => this.camera,
@@ -302,6 +307,12 @@ export class View {
     this.#draw()
   }
 
+  /** Buttons over the top of the view, below which the mechanism is fitted; they may wrap into several rows. */
+  set buttons(element: HTMLElement) {
+    this.#buttons = element
+    new ResizeObserver(() => this.#turned || this.fit()).observe(element)
+  }
+
   #frame(width: number, height: number): void {
     const room = ROOM * this.original.unit
     const padded = [0, 1, 2].flatMap((k) => [-room, room].map((by) => new Vector3().setComponent(k, by)))
@@ -314,9 +325,10 @@ export class View {
     ]
     this.#overview?.resize(points, width, height)
     const seen = this.#overview?.part(points, this.#focus(), width / height) ?? points
-    this.#controls.target.copy(
-      fit(this.camera, seen, this.original.size, this.#look, width, height, this.#overview?.strip(height)),
-    )
+    const covered = this.#buttons?.getBoundingClientRect().bottom ?? 0
+    const above = Math.max(covered - this.element.getBoundingClientRect().top, 0)
+    const top = this.#overview?.strip(height) ?? (above || undefined)
+    this.#controls.target.copy(fit(this.camera, seen, this.original.size, this.#look, width, height, { top }))
     this.#controls.update()
   }
 

@@ -14,11 +14,11 @@ import { loads } from './load'
 import { meshes } from './mesh'
 import { motors } from './motor'
 import { paths } from './paths'
-import { trace } from './trace'
+import { traces } from './trace'
 import { wheels } from './wheel'
 
 /** Every kind of thing that a mechanism is made of, one file each. */
 export const matter: Draw[] = [bodies, meshes, ground, fixedLink, joints, couplers, wheels, distances, motors, paths]
 
 /** Marks on the mechanism; made anew with every choice. `mechanism.former` is the design drawn dashed. */
-export const marks: Draw[] = [formerDesign, trace, drivers, dimension, loads, designVelocity, shapes, nearestLines]
+export const marks: Draw[] = [formerDesign, traces, drivers, dimension, loads, designVelocity, shapes, nearestLines]

@@ -2,8 +2,10 @@ import { Group, InstancedMesh, Matrix4, SphereGeometry, Vector3 } from 'three'
 import { stepAt } from '../../curve'
 import { roundBelow } from '../../format'
 import { above, ABOVE, over } from '../arrow'
-import type { Draw, Frame } from '../drawable'
+import type { PathPoint } from '../../state'
+import type { Draw, Drawable, Frame } from '../drawable'
 import type { Kit } from '../kit'
+import type { Mechanism } from '../mechanism'
 
 /** Width of the line, px; of the former design's. */
 const LINE = 2.2
@@ -14,13 +16,14 @@ const PRESENT = 1.05
 /** Minimum number of marked times, uniformly spaced. */
 const DOTS = 12
 
+/** The paths of the chosen points. */
+export const traces: Draw = (mechanism, kit, choice) => choice.traces.flatMap((at) => trace(mechanism, kit, at))
+
 /**
- * The path of the chosen point, with dots at equal times, which show its speed, and a larger one where it is; gaps
+ * The path of a point, with dots at equal times, which show its speed, and a larger one where it is; gaps
  * where there is no solution.
  */
-export const trace: Draw = (mechanism, kit, choice) => {
-  if (!choice.trace) return []
-  const [body, point] = choice.trace
+function trace(mechanism: Mechanism, kit: Kit, [body, point]: PathPoint): Drawable[] {
   const track = mechanism.report.bodies[body]
   const place = new Vector3(...track.skeleton[point])
   const { trace: colour, former } = kit.palette
