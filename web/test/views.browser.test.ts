@@ -162,6 +162,28 @@ test('paths of several hardpoints are drawn at once, and one button removes them
   expect((await picture(page)).equals(bare)).toBe(true)
 })
 
+test('without a graphics card the picture is lighter while something is dragged, and whole again after that', async () => {
+  await open('macpherson')
+  await scrub(page, 0)
+  const before = await picture(page)
+  const light = page.locator('.view.light')
+  const { x, y } = await centre('scrub')
+  await page.mouse.move(x, y)
+  expect(await light.count()).toBe(0)
+  await page.mouse.down()
+  await page.mouse.move(x + 40, y, { steps: 3 })
+  expect(await light.count()).toBe(1)
+  const step = Number(await page.getByTestId('scrub').inputValue())
+  const dragged = await picture(page)
+  await page.mouse.up()
+  expect(await light.count()).toBe(0)
+  // The same moment with its shadows.
+  expect(Number(await page.getByTestId('scrub').inputValue())).toBe(step)
+  expect((await picture(page)).equals(dragged)).toBe(false)
+  await scrub(page, 0)
+  expect((await picture(page)).equals(before)).toBe(true)
+})
+
 describe('measuring', () => {
   test('shows the distance of two points and the angle of three, at every moment', async () => {
     await open('four_bar')

@@ -66,7 +66,7 @@ export class Inspector {
     this.#dock(selected)
   }
 
-  /** Into the corner of the view where it hides least of the motion, and nothing of the selection if that is possible. */
+  /** Moves it into the corner of the view where it hides least of the motion and of the selection. */
   #dock(selected: Part): void {
     const { clientWidth: width, clientHeight: height } = this.view.element
     const { offsetWidth: wide, offsetHeight: tall } = this.element

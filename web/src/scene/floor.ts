@@ -33,6 +33,8 @@ export class Floor {
   readonly object = new Group()
   /** Side of the grid's cell, in the model's length unit. */
   readonly cell: number
+  /** Receives the shadows; a planar mechanism has none. */
+  readonly shadow?: Object3D
   readonly #own: (BufferGeometry | Material)[] = []
 
   /** `lowest` is the lowest coordinate of the drawing along `up`; vehicles are on the road. */
@@ -75,6 +77,7 @@ export class Floor {
     ground.position.copy(middle)
     ground.receiveShadow = true
     this.#own.push(material, ground.geometry)
+    this.shadow = ground
     this.object.add(ground)
   }
 

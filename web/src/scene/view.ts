@@ -31,6 +31,7 @@ import { Overview } from './overview'
 import { paletteOf } from './palette'
 import { Pointer } from './pointer'
 import { present } from './shape'
+import { isSoftware, whileDragged } from './spare'
 import { Triad } from './triad'
 
 /** Room round every place that the motion visits, in units. */
@@ -95,6 +96,8 @@ export class View {
   /** True if the reader turned or moved the view since it was fitted. */
   #turned = false
   #buttons?: HTMLElement
+  /** True while something is dragged and the processor draws: without shadows, in fewer pixels. */
+  #isLight = false
   /** Position to take as soon as the view has a size. */
   #wanted?: Pose
   #stale = false
@@ -173,6 +176,8 @@ export class View {
     state.onPoint(remark)
     onSchemeChange(() => this.#repaint(), state.ended)
     addEventListener('beforeprint', () => this.#still(), { signal: state.ended })
+    if (isSoftware(this.#renderer.getContext()))
+      whileDragged(this.element, (isDragged) => this.#lighten(isDragged), state.ended)
     new ResizeObserver(([{ contentRect }]) => {
       this.#extent = { width: Math.round(contentRect.width), height: Math.round(contentRect.height) }
       this.#resize()
@@ -516,11 +521,11 @@ export class View {
       this.#matter.pose(frame)
       this.#marks.pose(frame)
       // Shadows stay where they are while only the reader moves.
-      this.#renderer.shadowMap.needsUpdate = true
+      this.#renderer.shadowMap.needsUpdate = !this.#isLight
       this.#moved = false
     }
     if (this.#matter.refine(pixelsPerLength(this.camera, this.#controls.target, height)))
-      this.#renderer.shadowMap.needsUpdate = true
+      this.#renderer.shadowMap.needsUpdate = !this.#isLight
     const { layers } = this.camera
     layers.set(0)
     this.#renderer.clear()
@@ -566,17 +571,30 @@ export class View {
   #resize(): void {
     const { width, height } = this.#extent
     if (width === 0 || height === 0) return
-    this.#size(Math.min(devicePixelRatio, 2))
+    this.#size(this.#ratio)
     if (this.#wanted) this.restore(this.#wanted)
     else if (this.#turned) shapeTo(this.camera, width / height)
     else this.fit()
     this.#render()
   }
 
+  /** Pixels of the picture per pixel of the page. */
+  get #ratio(): number {
+    return this.#isLight ? 1 : Math.min(devicePixelRatio, 2)
+  }
+
+  #lighten(isLight: boolean): void {
+    this.#isLight = isLight
+    this.element.classList.toggle('light', isLight)
+    if (this.#floor.shadow) this.#floor.shadow.visible = !isLight
+    this.#size(this.#ratio)
+    this.#move()
+  }
+
   #size(ratio: number): void {
     const { width, height } = this.#extent
     this.#renderer.setPixelRatio(ratio)
     this.#renderer.setSize(width, height, false)
-    this.#outlines.resize(width, height, ratio)
+    this.#outlines.resize(width, height, ratio, this.#isLight)
   }
 }
