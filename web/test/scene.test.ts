@@ -69,7 +69,7 @@ describe('the camera', () => {
   )
   const size = 750
 
-  test.each(directions)('sees the whole motion from %s, between buttons and caption', (direction) => {
+  test.each(directions)('sees the whole motion from %s, below the buttons', (direction) => {
     for (const camera of [new PerspectiveCamera(22), new OrthographicCamera()]) {
       for (const [width, height] of [
         [600, 1000],
@@ -83,7 +83,6 @@ describe('the camera', () => {
           const seen = point.clone().project(camera)
           for (const side of seen.toArray()) expect(Math.abs(side)).toBeLessThan(1)
           expect(((1 - seen.y) / 2) * height).toBeGreaterThan(34)
-          expect(((1 + seen.y) / 2) * height).toBeGreaterThan(26)
         }
       }
     }

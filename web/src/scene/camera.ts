@@ -18,9 +18,8 @@ export interface Look {
 const OPENING = 22
 /** Margin of the picture. */
 const MARGIN = 1.06
-/** Height of a row of buttons at the top of the view, and of the caption at its bottom, px. */
+/** Height of a row of buttons at the top of the view, px. */
 const TOP = 34
-const BOTTOM = 26
 
 /** Room that buttons and captions take at the top and at the bottom of the view, px. */
 export interface Insets {
@@ -127,7 +126,7 @@ export function fit(
   { direction }: Look,
   width: number,
   height: number,
-  { top = TOP, bottom = BOTTOM }: Insets = {},
+  { top = TOP, bottom = 0 }: Insets = {},
 ): Vector3 {
   camera.position.copy(direction)
   camera.lookAt(0, 0, 0)

@@ -68,7 +68,7 @@ export class Overview {
 
   resize(points: Vector3[], width: number, height: number): void {
     this.element.style.height = `${this.strip(height)}px`
-    fit(this.#camera, points, this.mechanism.size, this.look, width, this.strip(height), { top: 0, bottom: 0 })
+    fit(this.#camera, points, this.mechanism.size, this.look, width, this.strip(height), { top: 0 })
   }
 
   /** Draws the strip over the picture of the part. */

@@ -12,6 +12,7 @@ import {
   type Camera,
   cameraFor,
   fit,
+  type Insets,
   type Look,
   looksOf,
   pixelsPerLength,
@@ -76,6 +77,7 @@ export class View {
   #paper = el('canvas', { class: 'paper' })
   #grid = el('span')
   #arrows = el('span', { 'data-testid': 'arrows' })
+  #caption = el('span', { class: 'scale' }, this.#arrows, this.#grid)
   #lost = el(
     'p',
     { class: 'message', hidden: true },
@@ -156,7 +158,7 @@ export class View {
       this.#paper,
       this.#lost,
       this.#pointer.tip,
-      el('span', { class: 'scale' }, this.#arrows, this.#grid),
+      this.#caption,
     )
     this.element.append(this.#triad.element)
     this.#overview = Overview.of(this.original, this.#look, (place) => this.#visit(place))
@@ -330,11 +332,32 @@ export class View {
     ]
     this.#overview?.resize(points, width, height)
     const seen = this.#overview?.part(points, this.#focus(), width / height) ?? points
-    const covered = this.#buttons?.getBoundingClientRect().bottom ?? 0
-    const above = Math.max(covered - this.element.getBoundingClientRect().top, 0)
-    const top = this.#overview?.strip(height) ?? (above || undefined)
-    this.#controls.target.copy(fit(this.camera, seen, this.original.size, this.#look, width, height, { top }))
+    const place = (insets: Insets) =>
+      this.#controls.target.copy(fit(this.camera, seen, this.original.size, this.#look, width, height, insets))
+    const top = this.#overview?.strip(height)
+    place({ top })
+    // Below one row of buttons first; below all of them, and above the caption, where these would hide something.
+    const covered = this.#covered(seen, height)
+    if (covered) place({ ...covered, top: top ?? covered.top })
     this.#controls.update()
+  }
+
+  /** Insets of those, buttons and caption, that are over one of these points; undefined if none is. */
+  #covered(points: readonly Vector3[], height: number): Insets | undefined {
+    const { left, top } = this.element.getBoundingClientRect()
+    const seen = points.map((point) => this.project(point))
+    const isOver = (element: Element) => {
+      const box = element.getBoundingClientRect()
+      const [x, y] = [box.left - left, box.top - top]
+      return seen.some((at) => at.x > x && at.x < x + box.width && at.y > y && at.y < y + box.height)
+    }
+    const above = [...(this.#buttons?.children ?? [])].some(isOver)
+    const below = isOver(this.#caption)
+    if (!above && !below) return undefined
+    return {
+      ...(above && { top: this.#buttons!.getBoundingClientRect().bottom - top }),
+      ...(below && { bottom: height + top - this.#caption.getBoundingClientRect().top }),
+    }
   }
 
   /** The picture as vectors. */
