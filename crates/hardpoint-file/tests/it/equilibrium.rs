@@ -783,6 +783,7 @@ fn a_truss_snaps_through_at_its_limit_load() {
     let stop = Analysis::new(&model).unwrap().run().stop.unwrap();
     let StopKind::LimitLoad { part } = stop.kind else { panic!("{stop:?}") };
     near(part, 1.0 / 1.2, 1e-6, "limit load");
+    assert!(stop.headline(&model).ends_with("the mechanism snaps through"), "{}", stop.headline(&model));
 }
 
 #[test]
@@ -799,6 +800,7 @@ fn a_limit_load_is_at_its_time_whatever_the_law_and_the_drivers_are_those_of_the
         let stop = solution.stop.as_ref().unwrap();
         assert_eq!(stop.kind, StopKind::NoEquilibrium, "{times}");
         near(stop.failed_time, (1.0 / 1.3_f64).sqrt(), TIME_OF_LIMIT, times);
+        assert!(stop.snaps_through, "{times}");
         // The block begins at 0.3 m, where `sink` is zero.
         let last = solution.measured.len() - 1;
         assert_eq!(stop.last_time, Some(solution.motion.times[last]), "{times}");
@@ -1375,6 +1377,43 @@ fn a_driver_that_turns_between_output_times_ends_the_run_where_it_cannot_be_reac
         let stop = Analysis::new(&file(&slider_crank(times)).model).unwrap().run().stop.expect(times);
         assert_eq!(stop.kind, StopKind::Limit, "{times}");
         near(stop.failed_time, expected, TIME_OF_LIMIT, times);
+    }
+}
+
+/// An arm of 100 mm on one hinge, elastic in directions that the driver of its tip does not feel; or tilted by a force
+/// across, so that it reaches less.
+#[test]
+fn a_driver_beyond_the_reach_of_an_arm_ends_at_a_limit() {
+    let reach = |below: f64| 100.0_f64.hypot(below) - below;
+    // 100 N at 100 mm against 10 N m/deg: a = cos a in deg.
+    let mut tilt = 1.0_f64;
+    (0..20).for_each(|_| tilt = tilt.to_radians().cos());
+    // The tilted arm stops following the driver where its stiffness against the driver jumps.
+    for (below, elastic, across, reach, time) in [
+        (0.0, "z = 100", 0, reach(0.0), TIME_OF_LIMIT),
+        (5.0, "z = 100", 0, reach(5.0), TIME_OF_LIMIT),
+        (0.0, "about_z = 1", 0, reach(0.0), TIME_OF_LIMIT),
+        (0.0, "z = 100, about_x = 10", 100, 100.0 * tilt.to_radians().cos(), 1e-6),
+    ] {
+        let text = format!(
+            r#"
+name = "arm"
+units = {{ length = "mm", angle = "deg" }}
+hardpoints = {{ o = [0, 0, 0], tip = [100, 0, {below}] }}
+bodies = {{ arm = {{}} }}
+joints = {{ h = {{ type = "revolute", bodies = ["ground", "arm"], at = "o", axis = "y", axis2 = "x" }} }}
+points = {{ tip = {{ body = "arm", at = "tip" }} }}
+drivers = {{ d = {{ point = "tip", along = "z", law = "150*t" }} }}
+equilibrium = {{}}
+time = {{ end = 1, steps = 10 }}
+[forces]
+b = {{ type = "elastic_joint", joint = "h", {elastic} }}
+across = {{ type = "force", at = "tip", force = {across}, along = "y" }}
+"#
+        );
+        let stop = Analysis::new(&file(&text).model).unwrap().run().stop.expect(elastic);
+        assert_eq!(stop.kind, StopKind::Limit, "{elastic}");
+        near(stop.failed_time, reach / 150.0, time, elastic);
     }
 }
 

@@ -102,6 +102,8 @@ pub(crate) fn release(
 pub(crate) struct OpenPosition {
     /// True if the constraints can hardly follow the drivers that are held, whatever the others do.
     pub is_singular: bool,
+    /// The same if elastic joints could not open.
+    pub is_singular_if_rigid: bool,
     /// The mechanism with the openings that the constraints leave there; `None` if they are the same as before, or if
     /// there is no plan with them.
     pub other: Option<(Released, Topology)>,
@@ -117,9 +119,13 @@ pub(crate) fn release_at(
     let own = DriverId(model.drivers.len());
     let depends = dependence(every_opening, own, Some(rows));
     let design = dependence(every_opening, own, None);
-    let least = NEARLY_SINGULAR * design.pivots.iter().copied().fold(1.0, f64::min);
     // Redundant constraints are small pivots everywhere.
-    let is_singular = depends.pivots.iter().filter(|size| **size > least).count() < design.pivots.len();
+    let loses_rank = |here: &[f64], design: &[f64]| {
+        let least = NEARLY_SINGULAR * design.iter().copied().fold(f64::INFINITY, f64::min);
+        here.iter().filter(|size| **size > least).count() < design.len()
+    };
+    let is_singular = loses_rank(&depends.pivots, &design.pivots);
+    let is_singular_if_rigid = loses_rank(&depends.rigid_pivots, &design.rigid_pivots);
     let driven = |model: &Model| -> BTreeSet<(usize, usize)> {
         model.drivers.iter().map(|driver| (driver.joint.0, driver.coordinate)).collect()
     };
@@ -127,7 +133,7 @@ pub(crate) fn release_at(
         .then(|| choose(model, every_opening.clone(), depends, formulation).ok())
         .flatten()
         .filter(|(released, _)| driven(&released.model) != driven(open));
-    OpenPosition { is_singular, other }
+    OpenPosition { is_singular, is_singular_if_rigid, other }
 }
 
 /// Drives the openings that the constraints do not determine, and plans the solution.

@@ -33,6 +33,9 @@ const MOST_ITERATIONS: usize = 12;
 const CONTRACTION: f64 = 0.5;
 /// Largest of the first two corrections of an attempt, rad or sizes: a longer one may lead to another equilibrium.
 const LONGEST: f64 = 0.5;
+/// Distance to where the determinant of the stiffness vanishes by its trend, as a part of the way to an output time,
+/// within which it is the reason why there is no equilibrium near by. The end is known to 1e-9.
+const ENDS_AT_SINGULAR: f64 = 1e-3;
 /// Shortest part of the way from one output time, or turn of a law, to the next: if it is rejected, there is no
 /// equilibrium near by.
 const SHORTEST: f64 = 1e-9;
@@ -108,6 +111,15 @@ struct Accepted {
     loads: GivenLoads,
     /// Stiffness there; `None` before the first.
     stiffness: Option<Vec<f64>>,
+    /// Logarithm of its determinant.
+    log_determinant: f64,
+}
+
+impl Accepted {
+    /// Place on the path: the time, s, or the part of the way to the first output time.
+    fn place(&self) -> f64 {
+        self.time.unwrap_or(self.part)
+    }
 }
 
 /// Equilibrium at an output time.
@@ -139,6 +151,8 @@ pub(crate) struct EquilibriumSolver<'a> {
     /// Body-fixed data of measures.
     fixed: BodyFixed<Dual>,
     last: Accepted,
+    /// Place on the path of the equilibrium before, with the same openings, and the logarithm of the determinant there.
+    before: Option<[f64; 2]>,
     /// The last equilibria at output times, for predictions.
     path: Vec<Passed>,
     /// The last output time, and values of the user's drivers there.
@@ -154,6 +168,8 @@ pub(crate) struct EquilibriumSolver<'a> {
     first_units: Option<Vec<f64>>,
     /// Per opening: size of the terms of its stiffness.
     terms: Vec<f64>,
+    /// Logarithm of the determinant of the stiffness that was factored last.
+    log_determinant: f64,
     /// True if the stiffness that was factored last is regular.
     is_regular: bool,
     /// True if the derivatives are those at the equilibrium that was found last.
@@ -195,7 +211,9 @@ impl<'a> EquilibriumSolver<'a> {
                 drivers: vec![0.0; model.drivers.len()],
                 loads: GivenLoads::none(model),
                 stiffness: None,
+                log_determinant: f64::NAN,
             },
+            before: None,
             path: Vec::new(),
             reported: None,
             forces: vec![0.0; n],
@@ -204,6 +222,7 @@ impl<'a> EquilibriumSolver<'a> {
             units: vec![1.0; n],
             first_units: None,
             terms: vec![0.0; n],
+            log_determinant: f64::NAN,
             is_regular: false,
             is_prepared: false,
             shortest: SHORTEST_AT_FIRST,
@@ -249,6 +268,7 @@ impl<'a> EquilibriumSolver<'a> {
             drivers: one.mechanism.drivers.iter().map(|[value, ..]| *value).collect(),
             loads: before.last.loads.clone(),
             stiffness: None,
+            log_determinant: f64::NAN,
         };
         self.reported.clone_from(&before.reported);
         self.shortest = before.shortest;
@@ -256,6 +276,7 @@ impl<'a> EquilibriumSolver<'a> {
         let given = self.last.loads.clone();
         let is_stable = self.examine(one, &given).is_ok();
         self.last.stiffness = Some(self.stiffness.clone());
+        self.last.log_determinant = self.log_determinant;
         is_stable
     }
 
@@ -308,8 +329,12 @@ impl<'a> EquilibriumSolver<'a> {
                     certain = is_stable;
                     (done, part) = (next, 2.0 * part);
                     let reached = (from.is_some() || done == 1.0).then_some(time);
-                    let stiffness = Some(self.stiffness.clone());
-                    self.last = Accepted { time: reached, part: done, drivers, loads, stiffness };
+                    let (stiffness, log_determinant) = (Some(self.stiffness.clone()), self.log_determinant);
+                    // Times and parts of the way to the first output time cannot be compared.
+                    self.before = (self.last.time.is_some() == reached.is_some())
+                        .then_some([self.last.place(), self.last.log_determinant]);
+                    self.last =
+                        Accepted { time: reached, part: done, drivers, loads, stiffness, log_determinant };
                     if time < output {
                         // Ever shorter steps would follow the law beyond all bounds.
                         self.unbounded_law(one, time, output).map_or(Ok(()), Err)?;
@@ -595,6 +620,8 @@ impl<'a> EquilibriumSolver<'a> {
             }
         }
         let factored = self.tangent.factor();
+        self.log_determinant =
+            factored.determinant.ln() - 2.0 * self.units.iter().map(|unit| unit.ln()).sum::<f64>();
         self.is_regular = n == 0 || factored.pivot_ratio > HOLDS_NOTHING;
         if self.is_regular { Ok(factored.positive) } else { Err(Rejection::NothingHolds) }
     }
@@ -930,7 +957,19 @@ impl<'a> EquilibriumSolver<'a> {
             None => StopKind::LimitLoad { part: done },
             Some(_) => StopKind::NoEquilibrium,
         });
-        self.stop_as(one, kind, failed_time)
+        let snaps_through = self.ends_at_singular_stiffness(t);
+        Box::new(Stop { snaps_through, ..*self.stop_as(one, kind, failed_time) })
+    }
+
+    /// True if the determinant of the stiffness vanishes where the path ends, on the way to an output time. Towards a
+    /// limit load it goes with the root of the distance, so that its square is extrapolated.
+    fn ends_at_singular_stiffness(&self, t: f64) -> bool {
+        let Some([place, log_determinant]) = self.before else { return false };
+        let way = self.last.time.map_or(1.0, |_| t - self.reported.as_ref().map_or(t, |(time, _)| *time));
+        // s* - s_2 = (s_2 - s_1) r^2 / (1 - r^2),  r = det K_2 / det K_1
+        let square = (2.0 * (self.last.log_determinant - log_determinant)).exp();
+        let distance = (self.last.place() - place) * square / (1.0 - square);
+        (0.0..=ENDS_AT_SINGULAR * way).contains(&distance)
     }
 
     /// Values of the user's drivers at the equilibrium that was accepted last.
@@ -954,6 +993,7 @@ impl<'a> EquilibriumSolver<'a> {
             joints: Vec::new(),
             remains: Vec::new(),
             closed: None,
+            snaps_through: false,
         })
     }
 }

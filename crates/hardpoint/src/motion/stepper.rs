@@ -216,6 +216,7 @@ impl<'m> Stepper<'m> {
             joints: block.map_or_else(Vec::new, |b| topology.joints_of_block(b)),
             remains: Vec::new(),
             closed: (path == Path::Assembly).then_some(now),
+            snaps_through: false,
         })
     }
 

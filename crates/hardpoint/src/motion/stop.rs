@@ -28,6 +28,8 @@ pub struct Stop {
     pub remains: Vec<Gap>,
     /// Fraction of the gaps that could be closed together during the assembly, 0 to 1.
     pub closed: Option<f64>,
+    /// True if the tangent stiffness of an equilibrium becomes singular there: beyond it the mechanism snaps through.
+    pub snaps_through: bool,
 }
 
 /// Event that ended a run.
@@ -268,11 +270,15 @@ impl Stop {
             }
             StopKind::Interrupted => format!("interrupted at t = {t:.6} s"),
             StopKind::NothingHolds { direction } => format!("nothing holds {}", direction.words(model)),
-            StopKind::LimitLoad { part } => format!(
-                "beyond {part:.6} of the loads at t = {t:.6} s there is no equilibrium near by: the mechanism snaps through"
-            ),
+            StopKind::LimitLoad { part } => {
+                let snaps = self.in_words_if_it_snaps();
+                format!(
+                    "beyond {part:.6} of the loads at t = {t:.6} s there is no equilibrium near by{snaps}"
+                )
+            }
             StopKind::NoEquilibrium => {
-                format!("beyond t = {t:.6} s there is no equilibrium near by: the mechanism snaps through")
+                let snaps = self.in_words_if_it_snaps();
+                format!("beyond t = {t:.6} s there is no equilibrium near by{snaps}")
             }
             StopKind::Unstable { direction } => {
                 format!("the equilibrium becomes unstable at t = {t:.6} s along {}", direction.words(model))
@@ -282,6 +288,11 @@ impl Stop {
                 direction.words(model)
             ),
         }
+    }
+
+    /// End of a sentence about an equilibrium that ends.
+    fn in_words_if_it_snaps(&self) -> &'static str {
+        if self.snaps_through { ": the mechanism snaps through" } else { "" }
     }
 
     /// Description without the time, for events that are not at a time.
@@ -384,8 +395,8 @@ impl Stop {
                 "give the direction a stiffness, hold it with a driver that is not released, or make it rigid"
             }
             StopKind::LimitLoad { .. } | StopKind::NoEquilibrium => {
-                "reduce the loads, make the springs and elastic joints stiffer, or begin with the loads at zero and \
-                 increase them over time to see how it gets there"
+                "reduce the loads or shorten the sweep of the drivers, make the springs and elastic joints stiffer, or \
+                 begin with the loads at zero and increase them over time to see how it gets there"
             }
             StopKind::Unstable { .. } => {
                 "the forces push the mechanism away from its position: reduce them, or stiffen that direction"

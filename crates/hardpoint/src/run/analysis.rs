@@ -327,11 +327,16 @@ impl<'m> Analysis<'m> {
     }
 
     /// Examines a position with these rows at an equilibrium; `None` without one. Returns whether the constraints are
-    /// singular there, and the analysis of the same model with the openings that they leave there, if they are others.
-    pub(super) fn examine_openings(&self, rows: &[TreeRow]) -> Option<(bool, Option<Analysis<'static>>)> {
+    /// singular there, with all openings and without, and the analysis of the same model with the openings that they
+    /// leave there, if they are others.
+    pub(super) fn examine_openings(
+        &self,
+        rows: &[TreeRow],
+    ) -> Option<([bool; 2], Option<Analysis<'static>>)> {
         let OpenModel { user, every_opening, .. } = &**self.equilibrium.as_ref()?;
         let before = (every_opening, self.solved_model());
-        let OpenPosition { is_singular, other } = release_at(user, before, rows, self.topology.formulation);
+        let OpenPosition { is_singular, is_singular_if_rigid, other } =
+            release_at(user, before, rows, self.topology.formulation);
         let with = |(released, topology): (Released, Topology)| {
             let Released { model: open, openings, every_opening } = released;
             let start = start::start_coordinates(&open, &topology);
@@ -347,7 +352,7 @@ impl<'m> Analysis<'m> {
                 end: self.end.clone(),
             }
         };
-        Some((is_singular, other.map(with)))
+        Some(([is_singular, is_singular_if_rigid], other.map(with)))
     }
 
     /// Returns the places, laws and design velocities of the model as functions of the design.
@@ -440,6 +445,7 @@ impl<'m> Analysis<'m> {
             joints: Vec::new(),
             remains: Vec::new(),
             closed: None,
+            snaps_through: false,
         }
     }
 

@@ -220,6 +220,7 @@ impl Analysis<'_> {
             joints: Vec::new(),
             remains: Vec::new(),
             closed: None,
+            snaps_through: false,
         })
     }
 

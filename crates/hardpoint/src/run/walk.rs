@@ -335,7 +335,9 @@ impl<'a> Walk<'a> {
                 return Err(stop);
             }
             let rows = self.one.mechanism.accepted_rows();
-            let Some((is_singular, analysis)) = self.plan.analysis.examine_openings(&rows) else {
+            let Some(([is_singular, is_singular_if_rigid], analysis)) =
+                self.plan.analysis.examine_openings(&rows)
+            else {
                 return Err(stop);
             };
             let other = analysis.and_then(|analysis| self.in_openings_of(analysis));
@@ -363,7 +365,8 @@ impl<'a> Walk<'a> {
                     equilibrium.step(&mut self.one, t)
                 }
                 (None, _) => {
-                    if is_singular {
+                    // A limit load, at which the stiffness vanishes, may be next to a limit of the rigid mechanism.
+                    if is_singular || is_singular_if_rigid && !stop.snaps_through {
                         stop.kind = StopKind::Limit;
                         stop.joints = self.one.joints_nearest_to_singular();
                     }

@@ -30,8 +30,10 @@ pub(crate) struct Dependence {
     pub free: Vec<(JointId, usize)>,
     /// Joints with such a freedom that is part of the rotation of a ball, which no driver prescribes.
     pub free_balls: Vec<JointId>,
-    /// Sizes of the pivots, as fractions of the largest entry.
+    /// Sizes of the pivots, without dimension: those of different positions can be compared.
     pub pivots: Vec<f64>,
+    /// The same without openings: those of the mechanism whose elastic joints are rigid.
+    pub rigid_pivots: Vec<f64>,
 }
 
 /// Row of a constraint at a position: per coordinate of the tree the body that its link places, the index among the
@@ -88,8 +90,11 @@ pub(crate) fn dependence(model: &Model, first: DriverId, at: Option<&[TreeRow]>)
         SetBy::Driver(d) if d >= first => Some(POOR_LEVERAGE),
         SetBy::Driver(d) => released.contains(&d).then_some(1.0),
     };
+    let is_rigid = |c: CoordinateId| !matches!(topology[c].set_by, SetBy::Driver(d) if d >= first);
+    let rigid_pivots = eliminate(rows.clone(), largest, |c| weight(c).filter(|_| is_rigid(c)));
     let pivots = eliminate(rows, largest, weight);
-    let sizes = pivots.iter().map(|(_, x)| x.abs() / largest).collect();
+    let sizes = |pivots: &[(CoordinateId, f64)]| pivots.iter().map(|(_, x)| x.abs()).collect();
+    let (sizes, rigid_pivots) = (sizes(&pivots), sizes(&rigid_pivots));
     let pivots: Vec<CoordinateId> = pivots.into_iter().map(|(c, _)| c).collect();
     let (mut free, mut free_balls) = (Vec::new(), Vec::new());
     for c in unknown.iter().filter(|c| !pivots.contains(c)) {
@@ -108,7 +113,13 @@ pub(crate) fn dependence(model: &Model, first: DriverId, at: Option<&[TreeRow]>)
         SetBy::Driver(d) => Some(d),
         SetBy::Block { .. } => None,
     });
-    Dependence { determined: determined.chain(at_cut_joints).collect(), free, free_balls, pivots: sizes }
+    Dependence {
+        determined: determined.chain(at_cut_joints).collect(),
+        free,
+        free_balls,
+        pivots: sizes,
+        rigid_pivots,
+    }
 }
 
 /// A row of a position by the coordinates of a tree.
