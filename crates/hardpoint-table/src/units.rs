@@ -163,6 +163,7 @@ impl Units {
             ElementUnit::Angle => angle,
             ElementUnit::Stiffness | ElementUnit::Damping => 1.0 / length,
             ElementUnit::CubicStiffness => 1.0 / (length * length * length),
+            ElementUnit::CubicTorsionalStiffness => 1.0 / (angle * angle * angle),
             ElementUnit::TorsionalStiffness | ElementUnit::TorsionalDamping | ElementUnit::Coupling => {
                 1.0 / angle
             }

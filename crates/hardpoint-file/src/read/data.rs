@@ -86,6 +86,14 @@ pub(super) const FORCE: Curve = Curve {
     write: "write a deflection in the model's length unit and a force in N on each line, like `12.5, 340`",
 };
 
+/// Moment of a spring.
+pub(super) const MOMENT: Curve = Curve {
+    abscissa: "angle",
+    abscissas: "angles",
+    write: "write an angle in the model's angle unit and a moment in N m on each line, like `5, 34`",
+    ..FORCE
+};
+
 /// Points, the name of a file that holds them, or a table with it.
 pub(super) fn points_given(
     r: &mut Reader<'_>,

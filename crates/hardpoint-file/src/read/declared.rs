@@ -37,6 +37,11 @@ const FORCE_TABLE: Shape = Shape::Any(
     "A force in N over a way in the length unit.",
     &[Shape::list(&TWO_NUMBERS), Shape::File, Shape::Table(&FORCE_FILE)],
 );
+const MOMENT_TABLE: Shape = Shape::Any(
+    "MomentTable",
+    "A moment in N m over an angle in the angle unit.",
+    &[Shape::list(&TWO_NUMBERS), Shape::File, Shape::Table(&MOMENT_FILE)],
+);
 const MATRIX_ROW: Shape = Shape::exactly(6, &NUMBER);
 const MATRIX: Shape =
     Shape::Any("StiffnessMatrix", "Six rows of six numbers.", &[Shape::exactly(6, &MATRIX_ROW)]);
@@ -46,6 +51,14 @@ pub(super) const FORCE_FILE: Table = table! {
     /// A CSV file in the model's folder or below it: deflections in the length unit, and forces in N.
     must "file": Shape::File, "\"bump_stop.csv\"";
     /// The file's columns of deflection and force, by name or by number from 1. Default: the first two.
+    may "columns": Shape::exactly(2, &COLUMN), "[1, 2]";
+};
+pub(super) const MOMENT_FILE: Table = table! {
+    /// A moment over an angle in a CSV file.
+    "MomentFile":
+    /// A CSV file in the model's folder or below it: angles in the angle unit, and moments in N m.
+    must "file": Shape::File, "\"bush_about_z.csv\"";
+    /// The file's columns of angle and moment, by name or by number from 1. Default: the first two.
     may "columns": Shape::exactly(2, &COLUMN), "[1, 2]";
 };
 const REACTION_PART: Shape = Shape::Any(
@@ -98,6 +111,7 @@ pub(super) fn key(field: &MeasureField) -> Key {
         FieldKind::Wheel => (Shape::Name("a wheel"), "\"front_left\""),
         FieldKind::Clearance => (Shape::Name("a clearance"), "\"rod_to_screws\""),
         FieldKind::Table => (FORCE_TABLE, "[[0, 0], [20, 400], [35, 1500]]"),
+        FieldKind::MomentTable => (MOMENT_TABLE, "[[-20, -30], [0, 0], [20, 30]]"),
         FieldKind::Matrix => (
             MATRIX,
             "[[4000, 0, 0, 0, 120, 0], [0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0], [120, 0, 0, 0, 35, 0], [0, 0, 0, 0, 0, 0]]",
@@ -122,6 +136,7 @@ fn with_unit(field: &MeasureField) -> &'static str {
         ElementUnit::CubicStiffness => "N per cube of it",
         ElementUnit::Damping => "N s per unit of length",
         ElementUnit::TorsionalStiffness => "N m per unit of angle",
+        ElementUnit::CubicTorsionalStiffness => "N m per cube of the angle",
         ElementUnit::TorsionalDamping => "N m s per unit of angle",
         ElementUnit::Coupling => "N per unit of angle",
         // Their sentences say it, or the shape does.
@@ -166,6 +181,9 @@ pub(super) fn own_field(
         }
         FieldKind::Law => r.given(fields, key, |r, f| factor_law(r, fields, f)).map(FieldDraft::Law),
         FieldKind::Table => r.given(fields, key, |r, f| force_table(r, fields, f)).map(FieldDraft::Table),
+        FieldKind::MomentTable => {
+            r.given(fields, key, |r, f| moment_table(r, fields, f)).map(FieldDraft::Table)
+        }
         FieldKind::Matrix => r.given(fields, key, |r, f| matrix(r, fields, f)).map(FieldDraft::Matrix),
         FieldKind::Mesh => {
             let solid = mesh::solid(r, &raw.meshes, fields, key);
@@ -216,6 +234,12 @@ fn ray(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>, place: &mut EntryP
 fn force_table(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>) -> Option<Vec<[f64; 2]>> {
     let points = data::points_given(r, fields, f, &FORCE_FILE, &data::FORCE)?;
     Some(points.into_iter().map(|[way, force]| [r.units.length.metres(way), force]).collect())
+}
+
+/// Moment over angle, given here or in a file.
+fn moment_table(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>) -> Option<Vec<[f64; 2]>> {
+    let points = data::points_given(r, fields, f, &MOMENT_FILE, &data::MOMENT)?;
+    Some(points.into_iter().map(|[angle, moment]| [r.units.angle.radians(angle), moment]).collect())
 }
 
 /// Symmetric stiffness matrix.

@@ -129,7 +129,7 @@ const UNIT_WORDS: [(&str, &str); 12] = [
 ];
 /// Tables of `docs/file-format.md`, by their names there.
 #[cfg(test)]
-pub(crate) fn tables() -> [(&'static str, Shape); 50] {
+pub(crate) fn tables() -> [(&'static str, Shape); 51] {
     use super::{declared, law, mesh};
     use crate::compose::INCLUDE_TABLE;
 
@@ -169,6 +169,7 @@ pub(crate) fn tables() -> [(&'static str, Shape); 50] {
         ("grids", Shape::Kinds(&cases::SWEEP)),
         ("targets in files", Shape::Table(&metrics::TARGET_FILE)),
         ("forces in files", Shape::Table(&declared::FORCE_FILE)),
+        ("moments in files", Shape::Table(&declared::MOMENT_FILE)),
         ("optimize", Shape::Table(&optimize::OPTIMIZE)),
         ("goals", Shape::Table(&optimize::GOAL)),
         ("limits", Shape::Kinds(&optimize::LIMIT)),

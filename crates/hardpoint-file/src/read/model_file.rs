@@ -6,7 +6,7 @@ use std::path::Path;
 
 use hardpoint::draft::{Section, some_of};
 use hardpoint::joint::Quantity;
-use hardpoint::model::element::ActsOn;
+use hardpoint::model::element::{ActsOn, ForceCurve};
 use hardpoint::model::{
     BodyId, CaseId, DesignVariable, Element, LimitTarget, Model, SweepRange, SweepSettings, VariableId,
 };
@@ -256,6 +256,33 @@ impl ModelFile {
             )
         };
         forces.enumerate().filter_map(of).collect()
+    }
+
+    /// HP0257: warnings about curves of elastic joints and bushings whose force falls with the deflection somewhere,
+    /// or does not change at zero deflection.
+    pub(super) fn falling_curves(&self) -> Vec<Diagnostic> {
+        let model = &self.model;
+        let masses = model.elements.iter().filter(|e| e.kind.has_mass()).count();
+        let of = |curve: ForceCurve<'_>| {
+            let name = shown(&model.elements[curve.element.0].name);
+            let (falling, key) = (model.falling_intervals(&curve), curve.key);
+            let [first, ..] = falling[..] else { return None };
+            let (unit, per_si) = self.units.of(curve.quantity(model));
+            let [from, to] = first.map(|e| hardpoint_table::figures::with_unit(e * per_si, unit));
+            let message = format!("`{key}` of `{name}` falls with the deflection from {from} to {to}");
+            let place = Some((Section::Forces, curve.element.0 - masses));
+            let mut d = self.diagnostic(Severity::Warning, "HP0257", message, place);
+            if falling.len() > 1 {
+                d = d.note(format!("and in {} further intervals", falling.len() - 1));
+            }
+            Some(
+                d.note(
+                    "where the stiffness is negative, an equilibrium may be unstable, or jump to another one",
+                )
+                .help("let the force grow from point to point, unless this is meant"),
+            )
+        };
+        model.force_curves().into_iter().filter_map(of).collect()
     }
 
     /// Renders a diagnostic of this file for a terminal; with `color`, with ANSI escapes.

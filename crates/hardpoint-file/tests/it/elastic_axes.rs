@@ -427,6 +427,107 @@ fn a_cubic_stiffness_beside_a_stiffness_has_its_closed_form() {
     assert!((e + e * e * e - 1.0).abs() < 1e-12, "{e}");
 }
 
+/// A body under a moment of this size about an axis, held by `joints` and a force element.
+fn turned(k: usize, moment: f64, joints: &str, element: &str) -> String {
+    let (axis, at) = (["x", "y", "z"][k], ["[0, 1000, 0]", "[0, 0, 1000]", "[1000, 0, 0]"][k]);
+    format!(
+        r#"
+name = "turned"
+units = {{ length = "mm", angle = "deg" }}
+parameters = {{ factor = 1.3 }}
+bodies = {{ b = {{}} }}
+{joints}
+points = {{ p = {{ body = "b", at = {at} }} }}
+[forces]
+soft = {{ {element} }}
+m = {{ type = "moment", body = "b", moment = {moment:?}, about = "{axis}" }}
+[measures]
+sine = {{ type = "position", point = "p", along = "{}" }}
+[time]
+at = [0]
+"#,
+        ["z", "x", "y"][k]
+    )
+}
+
+#[test]
+fn moments_over_an_angle_have_their_closed_form() {
+    // 12 a + 0.03 a^3 + 1.3 C(a) = M, in N m and deg, with C(5) = 8: a point of the curve.
+    let (a, of_curve) = (5.0, 8.0);
+    let (stiffness, cubic, factor) = (12.0, 0.03, 1.3);
+    let curve = "[[-10, -30], [0, 0], [5, 8], [12, 50]]";
+    // Fritsch and Butland: chords of 5 and 7 deg with slopes of 1.6 and 6.
+    let slope = (19.0 + 17.0) / (19.0 / 1.6 + 17.0 / 6.0);
+    for k in 0..3 {
+        let axis = ["x", "y", "z"][k];
+        let law = |others: f64| {
+            let given = (0..3).filter(|other| *other != k);
+            let given = given.map(|other| format!("about_{} = {others}, ", ["x", "y", "z"][other]));
+            format!(
+                "{}about_{axis} = 12, cubic_about_{axis} = 0.03, curve_about_{axis} = {curve}, scale_about_{axis} = \"factor\"",
+                given.collect::<String>()
+            )
+        };
+        let free = format!(
+            "joints = {{ j = {{ type = \"revolute\", bodies = [\"ground\", \"b\"], at = [0, 0, 0], axis = \"{axis}\" }} }}\n\
+             drivers = {{ d = {{ joint = \"j\", law = 0 }} }}\nequilibrium = {{ released = [\"d\"] }}"
+        );
+        let fixed = "joints = { j = { type = \"fixed\", bodies = [\"ground\", \"b\"], at = [0, 0, 0] } }\nequilibrium = {}";
+        let ends = "from = { body = \"ground\", at = [0, 0, 0] }, to = { body = \"b\", at = [0, 0, 0] }";
+        for (joints, element, cubic) in [
+            (fixed, format!("type = \"elastic_joint\", joint = \"j\", {}", law(90.0)), cubic),
+            (
+                "equilibrium = {}",
+                format!("type = \"bushing\", {ends}, x = 9, y = 9, z = 9, {}", law(90.0)),
+                cubic,
+            ),
+            (
+                free.as_str(),
+                format!(
+                    "type = \"torsion_spring\", joint = \"j\", stiffness = 12, curve = {curve}, scale = \"factor\""
+                ),
+                0.0,
+            ),
+        ] {
+            let moment = stiffness * a + cubic * a * a * a + factor * of_curve;
+            let model = model_of(&turned(k, moment, joints, &element));
+            for formulation in [Formulation::Relative, Formulation::Absolute] {
+                let solution = solved_by(&model, formulation);
+                let sine = value(&solution, 0, "sine");
+                assert!((sine - a.to_radians().sin()).abs() < 1e-12, "{element}: {sine}");
+                // da/df = -C / (k + 3 k_3 a^2 + f C')
+                let turn = -of_curve / (stiffness + 3.0 * cubic * a * a + factor * slope);
+                let expected = a.to_radians().cos() * turn.to_radians();
+                let m = solution.measured.index("sine").unwrap();
+                let found = solution.measured.d(0, model.variable("factor").unwrap(), m)[0];
+                assert!((found - expected).abs() < 1e-10 * expected.abs(), "{element}: {found} {expected}");
+            }
+            verify_all(&model);
+        }
+    }
+}
+
+#[test]
+fn curves_that_fall_are_reported_with_their_keys() {
+    let remarks = |keys: &str| {
+        let file = parse(&held("fixed", keys), "elastic.toml").unwrap_or_else(|e| panic!("{e}"));
+        file.remarks.iter().map(|d| format!("{} {}", d.code, d.message)).collect::<Vec<_>>()
+    };
+    for (keys, expected) in [
+        ("y = 10, curve_x = [[-1, 100], [1, -100]]", "`curve_x` of `soft` falls at zero deflection"),
+        ("x = 90, curve_x = [[-1, 100], [1, -100]]", "`curve_x` of `soft` falls at zero deflection"),
+        ("x = 90, curve_about_y = [[-1, 1], [1, -1]]", "`curve_about_y` of `soft` falls at zero deflection"),
+        ("x = 90, scale_x = 2", "`soft` has a `scale_x`, but no `curve_x`"),
+    ] {
+        let found = faults(&held("fixed", keys));
+        assert!(found.contains(expected), "{keys}: {found}");
+    }
+    assert!(remarks("x = 110, curve_x = [[-1, 100], [1, -100]]").is_empty());
+    let beside = "curve_x = [[-2, -80], [-1, -100], [1, 100], [2, 80], [3, 60], [4, 70]]";
+    assert_eq!(remarks(beside), ["HP0257 `curve_x` of `soft` falls with the deflection from -2 m to -1 m"]);
+    assert!(remarks(&format!("x = 30, {beside}")).is_empty());
+}
+
 /// An arm on hinges `jf` and `jr`, elastic by these keys, with a spring and a load; `jr` is left out without keys.
 fn arm([front, rear]: [&str; 2]) -> String {
     let joints: &[&str] = if rear.is_empty() { &["jf"] } else { &["jf", "jr"] };

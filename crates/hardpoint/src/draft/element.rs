@@ -3,9 +3,10 @@
 use crate::draft::{DirectionDraft, FieldDraft, MeasureField, NumberDraft, PointRef};
 use crate::law::Law;
 use crate::model::{
-    Angle, Axes, BodyId, CoupledStiffness, CubicStiffness, Damping, Density, Direction, ElementKind, Force,
-    Inertia, JointId, Length, Mass, Moment, Plain, PointId, Solid, SpringTable, Stiffness, TorsionalDamping,
-    TorsionalStiffness, WheelId, WheelPoint, element, elements, if_mass,
+    Angle, Axes, BodyId, CoupledStiffness, CubicStiffness, CubicTorsionalStiffness, Damping, Density,
+    Direction, ElementKind, Force, Inertia, JointId, Length, Mass, Moment, MomentTable, Plain, PointId,
+    Solid, SpringTable, Stiffness, TorsionalDamping, TorsionalStiffness, WheelId, WheelPoint, element,
+    elements, if_mass,
 };
 use crate::space::Vec3;
 

@@ -84,6 +84,8 @@ pub enum FieldKind {
     Clearance,
     /// Force over deflection, as points of a table.
     Table,
+    /// Moment over angle, as points of a table.
+    MomentTable,
     /// A symmetric matrix of stiffnesses.
     Matrix,
     /// A closed surface.

@@ -58,6 +58,7 @@ impl CheckElement for Bushing {
         }
         c.check_axes([self.axis, self.axis2]);
         self.check_across(c);
+        c.check_curves(&self.law());
     }
 }
 

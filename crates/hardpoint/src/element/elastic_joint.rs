@@ -4,7 +4,7 @@ use crate::draft::{CheckElement, ElementCheck};
 use crate::joint::{DIRECTION_NAMES, DIRECTIONS, Need, free_directions, sprung_directions};
 use crate::linalg::semidefinite::is_definite;
 use crate::load::{AppliedLoads, ForceFormula};
-use crate::model::element::{ActsOn, Compliance, ElasticJoint, ForceProperties, Properties};
+use crate::model::element::{ActsOn, CURVES, Compliance, ElasticJoint, ForceProperties, Properties};
 use crate::model::{Dimension, ElementId, Joint, Model, NumberId};
 use crate::number;
 use crate::space::{Real, Wrench};
@@ -26,10 +26,9 @@ impl ForceProperties for ElasticJoint {
     }
 }
 
-/// Keys of the cubic stiffnesses, as far as directions have them.
-const CUBIC: [&str; 3] = ["cubic_x", "cubic_y", "cubic_z"];
-/// Keys of the curves.
-const CURVES: [&str; 3] = ["curve_x", "curve_y", "curve_z"];
+/// Keys of the cubic stiffnesses.
+const CUBIC: [&str; DIRECTIONS] =
+    ["cubic_x", "cubic_y", "cubic_z", "cubic_about_x", "cubic_about_y", "cubic_about_z"];
 /// Keys of the preloads.
 const PRELOADS: [&str; DIRECTIONS] =
     ["preload_x", "preload_y", "preload_z", "preload_about_x", "preload_about_y", "preload_about_z"];
@@ -74,8 +73,7 @@ impl ElasticJoint {
         let rigid = |k: usize| !gives[k] && !free[k] && kind.freedoms.is_some();
         for k in (0..DIRECTIONS).filter(|k| rigid(*k)) {
             let (of, name) = (&law.directions[k], DIRECTION_NAMES[k]);
-            let curve = CURVES.get(k).map_or(String::new(), |curve| format!(", or a `{curve}`"));
-            let cubic = of.cubic.and(CUBIC.get(k).copied());
+            let cubic = of.cubic.map(|_| CUBIC[k]);
             for key in cubic.into_iter().chain(of.preload.map(|_| PRELOADS[k])) {
                 let message = format!(
                     "`{key}` of `{}` has no effect: the joint is rigid in direction `{name}`",
@@ -87,7 +85,7 @@ impl ElasticJoint {
                         "a cubic stiffness alone resists nothing in the design configuration without load",
                     );
                 }
-                fault.help(format!("add the stiffness `{name}`{curve}; or remove `{key}`"));
+                fault.help(format!("add the stiffness `{name}`, or a `{}`; or remove `{key}`", CURVES[k]));
             }
         }
         let entries = law.coupled.iter().flat_map(|matrix| &matrix.entries);
@@ -144,6 +142,7 @@ impl CheckElement for ElasticJoint {
             self.check_rigid(c);
         }
         self.check_across(c);
+        c.check_curves(&self.law());
         let joint = &c.model().joints[self.joint.0];
         if joint.kind.places == 0 {
             let message = format!("joint `{}` has no location at which it could deflect", joint.name);

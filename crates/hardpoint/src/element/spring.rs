@@ -17,10 +17,14 @@ impl Spring {
         (at.design_position(self.to) - at.design_position(self.from)).norm()
     }
 
+    /// Deflection of the spring at a length.
+    fn deflection<T: Real>(&self, at: &AppliedLoads<'_, T>, length: T) -> T {
+        length - self.free_length.map_or_else(|| self.design_length(at), |free| at.number(free.0))
+    }
+
     /// Tension from the deflection, and its derivative by the length.
     fn pull<T: Real>(&self, at: &AppliedLoads<'_, T>, length: T) -> [T; 2] {
-        let free_length = self.free_length.map_or_else(|| self.design_length(at), |free| at.number(free.0));
-        let way = length - free_length;
+        let way = self.deflection(at, length);
         let stiffness = at.or_zero(self.stiffness.map(|n| n.0));
         let (mut pull, mut slope) = (stiffness * way, stiffness);
         if let Some(cubic) = self.cubic {
@@ -29,9 +33,8 @@ impl Spring {
             (pull, slope) = (pull + cubic * way, slope + cubic * T::constant(3.0));
         }
         if let Some(table) = self.table() {
-            let scale = self.scale.map_or_else(T::one, |n| at.number(n.0));
-            let [force, by_way] = table.at(way);
-            (pull, slope) = (pull + scale * force, slope + scale * by_way);
+            let [force, by_way] = at.scaled(table, self.scale.map(|n| n.0), way);
+            (pull, slope) = (pull + force, slope + by_way);
         }
         [pull, slope]
     }
@@ -124,5 +127,10 @@ impl ForceFormula for Spring {
     fn deflections<T: Real>(&self, at: &AppliedLoads<'_, T>, _: ElementId, mut each: impl FnMut(T, T)) {
         let length = at.apart(at.point(self.to) - at.point(self.from));
         each(length, self.pull(at, length)[1]);
+    }
+
+    fn table_deflection<T: Real>(&self, at: &AppliedLoads<'_, T>, _: ElementId) -> Option<T> {
+        let length = (at.point(self.to) - at.point(self.from)).norm();
+        Some(self.deflection(at, length))
     }
 }

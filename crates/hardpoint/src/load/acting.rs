@@ -8,8 +8,8 @@ use crate::design::Geometry;
 use crate::measure::WheelAt;
 use crate::model::element::{ActsOn, Compliance, ElasticLaw, Elasticity, JointFriction, StiffnessEntry};
 use crate::model::{
-    Axes, BodyId, ENDS_MEET, ElementId, ElementKind, JointId, LoadMode, Model, NumberId, PointId, UnitForce,
-    Wheel, WheelId, elements, if_mass,
+    Axes, BodyId, ENDS_MEET, ElementId, ElementKind, JointId, LoadMode, Model, NumberId, PointId,
+    SpringTable, UnitForce, Wheel, WheelId, elements, if_mass,
 };
 use crate::number::{Dual, each};
 use crate::space::{Mat3, Pose, Real, Twist, Vec3, Wrench};
@@ -120,6 +120,11 @@ pub(crate) trait ForceFormula {
     /// Calls `each` with every deflection of the element and the stiffness against it; the derivatives of the poses
     /// give those of the deflections.
     fn deflections<T: Real>(&self, at: &AppliedLoads<'_, T>, e: ElementId, each: impl FnMut(T, T));
+
+    /// Returns the deflection of the force's table; `None` if its type has none.
+    fn table_deflection<T: Real>(&self, _: &AppliedLoads<'_, T>, _: ElementId) -> Option<T> {
+        None
+    }
 }
 
 macro_rules! in_loads {
@@ -150,6 +155,13 @@ macro_rules! in_loads {
             pub fn deflections(&self, e: ElementId, each: impl FnMut(T, T)) {
                 match &self.model.elements[e.0].kind {
                     $(ElementKind::$variant(it) => if_mass!($table, (), it.deflections(self, e, each))),*
+                }
+            }
+
+            /// Deflection of the table of a force; `None` if its type has none.
+            pub fn table_deflection(&self, e: ElementId) -> Option<T> {
+                match &self.model.elements[e.0].kind {
+                    $(ElementKind::$variant(it) => if_mass!($table, None, it.table_deflection(self, e))),*
                 }
             }
         }
@@ -355,7 +367,7 @@ impl<T: Real> AppliedLoads<'_, T> {
         }
     }
 
-    /// Elastic resistance along a coordinate of an opening, `k e + k_3 e^3 + C(e)`, and its derivative.
+    /// Elastic resistance along a coordinate of an opening, `k e + k_3 e^3 + f C(e)`, and its derivative.
     pub fn elastic_resistance(&self, e: T, of: &Elasticity<'_>) -> [T; 2] {
         let stiffness = self.or_zero(of.stiffness);
         let (mut push, mut slope) = (stiffness * e, stiffness);
@@ -364,10 +376,16 @@ impl<T: Real> AppliedLoads<'_, T> {
             (push, slope) = (push + square * e, slope + square * T::constant(3.0));
         }
         if let Some(curve) = of.curve {
-            let [force, by_way] = curve.at(e);
+            let [force, by_way] = self.scaled(curve, of.scale, e);
             (push, slope) = (push + force, slope + by_way);
         }
         [push, slope]
+    }
+
+    /// Force of a curve times its factor, and its derivative by the deflection.
+    pub fn scaled(&self, curve: &SpringTable, scale: Option<NumberId>, deflection: T) -> [T; 2] {
+        let [force, slope] = curve.at(deflection);
+        scale.map_or([force, slope], |scale| [force, slope].map(|x| x * self.number(scale)))
     }
 
     /// Elastic forces and moments of a law on body j along the coordinates of an opening.
@@ -385,7 +403,7 @@ impl<T: Real> AppliedLoads<'_, T> {
         forces
     }
 
-    /// Elastic forces and moments without preloads, `-(k e + k_3 e^3 + C(e))` and those of the matrix.
+    /// Elastic forces and moments without preloads, `-(k e + k_3 e^3 + f C(e))` and those of the matrix.
     fn elastic_forces_at(&self, coordinates: &[T; 6], law: &ElasticLaw<'_>) -> [T; 6] {
         let mut forces = [T::zero(); 6];
         for (k, of) in law.directions.iter().enumerate().filter(|(_, of)| of.resists()) {
@@ -573,16 +591,17 @@ impl<T: Real> AppliedLoads<'_, T> {
         ([half + couple, half - couple], 2)
     }
 
-    /// tau = -k (chi - chi_o) - c chi.,  chi measured from the design configuration.
+    /// tau = -k (chi - chi_o) - f C(chi - chi_o) - c chi.,  chi measured from the design configuration.
     pub fn on_coordinate(
         &self,
         [value, rate]: [T; 2],
-        stiffness: NumberId,
+        law: &Elasticity<'_>,
         equilibrium: Option<NumberId>,
         damping: Option<NumberId>,
     ) -> T {
-        // The prestress k chi_o grows with the loads.
-        let force = -(self.number(stiffness) * (value - self.preload(equilibrium)));
+        let equilibrium = self.or_zero(equilibrium);
+        let force = |value: T| -self.elastic_resistance(value - equilibrium, law)[0];
+        let force = self.grown(force(value), || force(T::zero()));
         damping.map_or(force, |damping| force - self.number(damping) * rate)
     }
 

@@ -1,8 +1,9 @@
 //! Sources of a mechanism's loads: masses, springs, given forces.
 
+use crate::joint::Quantity;
 use crate::law::Law;
 use crate::model::{
-    BodyId, Dimension, Direction, GROUND, JointId, Model, PointId, Solid, SpringTable, WheelId,
+    BodyId, Dimension, Direction, GROUND, JointId, Model, MomentTable, PointId, Solid, SpringTable, WheelId,
 };
 use crate::number::Real;
 use crate::space::{Mat3, Vec3};
@@ -127,6 +128,8 @@ numbers! {
     Damping
     /// A torsional stiffness, N m/rad.
     TorsionalStiffness
+    /// A torsional stiffness per square of the angle, N m/rad^3.
+    CubicTorsionalStiffness
     /// A torsional damping, N m s/rad.
     TorsionalDamping
     /// A stiffness that couples a displacement with an angle: a force per angle, N/rad.
@@ -158,12 +161,36 @@ macro_rules! elements {
             cubic_y: Option<NumberDraft> => Option<CubicStiffness>,
             /// Along z.
             cubic_z: Option<NumberDraft> => Option<CubicStiffness>,
+            /// Cubic stiffness about x: a further moment of this times the cube of the angle.
+            cubic_about_x: Option<NumberDraft> => Option<CubicTorsionalStiffness>,
+            /// About y.
+            cubic_about_y: Option<NumberDraft> => Option<CubicTorsionalStiffness>,
+            /// About z.
+            cubic_about_z: Option<NumberDraft> => Option<CubicTorsionalStiffness>,
             /// A further force against the displacement along x, as a curve: `[displacement, force]`, the force in N.
             curve_x: Option<Vec<[f64; 2]>> => Option<SpringTable>,
             /// Along y.
             curve_y: Option<Vec<[f64; 2]>> => Option<SpringTable>,
             /// Along z.
             curve_z: Option<Vec<[f64; 2]>> => Option<SpringTable>,
+            /// A further moment against the angle about x, as a curve: `[angle, moment]`, the moment in N m.
+            curve_about_x: Option<Vec<[f64; 2]>> => Option<MomentTable>,
+            /// About y.
+            curve_about_y: Option<Vec<[f64; 2]>> => Option<MomentTable>,
+            /// About z.
+            curve_about_z: Option<Vec<[f64; 2]>> => Option<MomentTable>,
+            /// Factor of the forces of `curve_x`. Default: 1.
+            scale_x: Option<NumberDraft> => Option<Plain>,
+            /// Of `curve_y`.
+            scale_y: Option<NumberDraft> => Option<Plain>,
+            /// Of `curve_z`.
+            scale_z: Option<NumberDraft> => Option<Plain>,
+            /// Factor of the moments of `curve_about_x`. Default: 1.
+            scale_about_x: Option<NumberDraft> => Option<Plain>,
+            /// Of `curve_about_y`.
+            scale_about_y: Option<NumberDraft> => Option<Plain>,
+            /// Of `curve_about_z`.
+            scale_about_z: Option<NumberDraft> => Option<Plain>,
             /// Preload: the force that pushes the second body along x in the design configuration.
             preload_x: Option<NumberDraft> => Option<Force>,
             /// Along y.
@@ -279,6 +306,10 @@ macro_rules! elements {
             stiffness: NumberDraft => Stiffness,
             /// The coordinate at which it pushes nothing; it counts from the drawing. Default: 0.
             equilibrium: Option<NumberDraft> => Option<Length>,
+            /// A further force against the way from `equilibrium`, as a curve: `[way, force]`, the force in N.
+            curve: Option<Vec<[f64; 2]>> => Option<SpringTable>,
+            /// Factor of the forces of `curve`. Default: 1.
+            scale: Option<NumberDraft> => Option<Plain>,
             /// Damping.
             damping: Option<NumberDraft> => Option<Damping>,
         }
@@ -293,6 +324,10 @@ macro_rules! elements {
             stiffness: NumberDraft => TorsionalStiffness,
             /// The angle at which it turns nothing; it counts from the drawing. Default: 0.
             equilibrium: Option<NumberDraft> => Option<Angle>,
+            /// A further moment against the angle from `equilibrium`, as a curve: `[angle, moment]`, the moment in N m.
+            curve: Option<Vec<[f64; 2]>> => Option<MomentTable>,
+            /// Factor of the moments of `curve`. Default: 1.
+            scale: Option<NumberDraft> => Option<Plain>,
             /// Damping, or a viscous friction of the joint.
             damping: Option<NumberDraft> => Option<TorsionalDamping>,
         }
@@ -554,15 +589,48 @@ impl ElasticLaw<'_> {
     }
 }
 
-/// Elastic law of one direction: `s(e) = k e + k_3 e^3 + C(e) - f_0`.
+/// Keys of the curves of an elastic law.
+pub const CURVES: [&str; 6] =
+    ["curve_x", "curve_y", "curve_z", "curve_about_x", "curve_about_y", "curve_about_z"];
+/// Keys of the factors of these curves.
+pub(crate) const SCALES: [&str; 6] =
+    ["scale_x", "scale_y", "scale_z", "scale_about_x", "scale_about_y", "scale_about_z"];
+
+/// Curve of a force over a deflection.
+#[derive(Clone, Copy, Debug)]
+pub struct ForceCurve<'a> {
+    /// The element.
+    pub element: ElementId,
+    /// Direction of an elastic joint or bushing: 0 to 2 along x, y and z, 3 to 5 about them.
+    pub direction: Option<usize>,
+    /// Key in model files.
+    pub key: &'static str,
+    /// Points.
+    pub table: &'a SpringTable,
+}
+
+impl ForceCurve<'_> {
+    /// Quantity of the deflections: a curve over an angle has moments.
+    pub fn quantity(&self, model: &Model) -> Quantity {
+        let is_angle = match self.direction {
+            Some(direction) => direction >= 3,
+            None => model.force_dimension(self.element) == Dimension::MOMENT,
+        };
+        if is_angle { Quantity::Angle } else { Quantity::Length }
+    }
+}
+
+/// Elastic law of one direction: `s(e) = k e + k_3 e^3 + f C(e) - f_0`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Elasticity<'a> {
     /// Stiffness k.
     pub stiffness: Option<NumberId>,
     /// Cubic stiffness k_3.
     pub cubic: Option<NumberId>,
-    /// Curve C of a force over the displacement.
+    /// Curve C of a force over the displacement, or of a moment over the angle.
     pub curve: Option<&'a SpringTable>,
+    /// Factor f of the curve; 1 without it.
+    pub scale: Option<NumberId>,
     /// Preload f_0, which pushes the second body along the direction.
     pub preload: Option<NumberId>,
 }
@@ -579,35 +647,31 @@ impl Elasticity<'_> {
     }
 }
 
-/// Elastic law of an element with fields of these names.
+/// Elastic law of a direction with a stiffness, from the fields of these names.
+macro_rules! direction {
+    ($of:ident, $stiffness:expr, $cubic:ident, $curve:ident, $scale:ident, $preload:ident) => {
+        Elasticity {
+            stiffness: $stiffness,
+            cubic: $of.$cubic.map(|n| n.0),
+            curve: $of.$curve.as_ref().map(AsRef::as_ref),
+            scale: $of.$scale.map(|n| n.0),
+            preload: $of.$preload.map(|n| n.0),
+        }
+    };
+}
+
+/// Elastic law of an element; `$wrap` makes its stiffness along an axis an optional number.
 macro_rules! elastic_law {
     ($of:expr, $wrap:expr) => {{
         let (of, wrap) = ($of, $wrap);
-        let law = |stiffness: Option<NumberId>, preload: Option<NumberId>| Elasticity {
-            stiffness,
-            preload,
-            ..Elasticity::default()
-        };
-        let [x, y, z] = [wrap(of.x), wrap(of.y), wrap(of.z)];
+        let about = |n: Option<TorsionalStiffness>| n.map(|n| n.0);
         let directions = [
-            Elasticity {
-                cubic: of.cubic_x.map(|n| n.0),
-                curve: of.curve_x.as_ref(),
-                ..law(x, of.preload_x.map(|n| n.0))
-            },
-            Elasticity {
-                cubic: of.cubic_y.map(|n| n.0),
-                curve: of.curve_y.as_ref(),
-                ..law(y, of.preload_y.map(|n| n.0))
-            },
-            Elasticity {
-                cubic: of.cubic_z.map(|n| n.0),
-                curve: of.curve_z.as_ref(),
-                ..law(z, of.preload_z.map(|n| n.0))
-            },
-            law(of.about_x.map(|n| n.0), of.preload_about_x.map(|n| n.0)),
-            law(of.about_y.map(|n| n.0), of.preload_about_y.map(|n| n.0)),
-            law(of.about_z.map(|n| n.0), of.preload_about_z.map(|n| n.0)),
+            direction!(of, wrap(of.x), cubic_x, curve_x, scale_x, preload_x),
+            direction!(of, wrap(of.y), cubic_y, curve_y, scale_y, preload_y),
+            direction!(of, wrap(of.z), cubic_z, curve_z, scale_z, preload_z),
+            direction!(of, about(of.about_x), cubic_about_x, curve_about_x, scale_about_x, preload_about_x),
+            direction!(of, about(of.about_y), cubic_about_y, curve_about_y, scale_about_y, preload_about_y),
+            direction!(of, about(of.about_z), cubic_about_z, curve_about_z, scale_about_z, preload_about_z),
         ];
         ElasticLaw { directions, coupled: of.matrix.as_ref() }
     }};
@@ -873,6 +937,56 @@ impl Model {
             (0..6).filter(move |k| compliant[*k]).map(move |k| (ElementId(e), k))
         };
         self.elements.iter().enumerate().flat_map(of).collect()
+    }
+
+    /// Curves of springs, bushings and elastic joints; without equilibrium elastic joints are rigid.
+    pub fn force_curves(&self) -> Vec<ForceCurve<'_>> {
+        let deflects = self.elastic_directions();
+        let mut curves = Vec::new();
+        for (e, Element { kind, .. }) in self.elements.iter().enumerate() {
+            let element = ElementId(e);
+            if let Some(table) = kind.force(self).and_then(|force| force.table) {
+                let key = if let ElementKind::Spring(spring) = kind {
+                    if spring.compression.is_some() { "compression" } else { "extension" }
+                } else {
+                    "curve"
+                };
+                curves.push(ForceCurve { element, direction: None, key, table });
+            }
+            let Some(law) = kind.elastic_law() else { continue };
+            for (k, of) in
+                law.directions.iter().enumerate().filter(|(k, _)| deflects.contains(&(element, *k)))
+            {
+                curves.extend(of.curve.map(|table| ForceCurve {
+                    element,
+                    direction: Some(k),
+                    key: CURVES[k],
+                    table,
+                }));
+            }
+        }
+        curves
+    }
+
+    /// Intervals of deflections between the points of a curve in which the force in its direction, with the stiffness
+    /// beside the curve, falls with the deflection; empty for a curve of a spring.
+    pub fn falling_intervals(&self, curve: &ForceCurve<'_>) -> Vec<[f64; 2]> {
+        let law = self.elements[curve.element.0].kind.elastic_law();
+        let (Some(k), Some(law)) = (curve.direction, law) else { return Vec::new() };
+        let number = |n: NumberId| self.numbers[n.0].value;
+        let of = law.directions[k];
+        let stiffness: f64 = law.stiffnesses(k, k).map(number).sum();
+        let (cubic, factor) = (of.cubic.map_or(0.0, number), of.scale.map_or(1.0, number));
+        let force = |[e, c]: [f64; 2]| stiffness * e + cubic * e.powi(3) + factor * c;
+        let mut falling: Vec<[f64; 2]> = Vec::new();
+        for pair in curve.table.points().windows(2).filter(|pair| force(pair[1]) < force(pair[0])) {
+            let [from, to] = [pair[0][0], pair[1][0]];
+            match falling.last_mut() {
+                Some(last) if last[1] == from => last[1] = to,
+                _ => falling.push([from, to]),
+            }
+        }
+        falling
     }
 
     /// Given forces and moments with a law.

@@ -32,9 +32,9 @@ pub use coupler::{Coupler, CouplerTerm, Transmission};
 pub(crate) use curve::Contact;
 pub use curve::{Curve, CurvePoint};
 pub use element::{
-    Angle, Axes, CoupledStiffness, Coupling, CubicStiffness, Damping, Density, ENDS_MEET, Element, ElementId,
-    ElementKind, ElementNumber, ElementUnit, Force, Inertia, Length, Mass, Moment, NumberId, Plain,
-    Stiffness, TorsionalDamping, TorsionalStiffness, WheelPoint,
+    Angle, Axes, CoupledStiffness, Coupling, CubicStiffness, CubicTorsionalStiffness, Damping, Density,
+    ENDS_MEET, Element, ElementId, ElementKind, ElementNumber, ElementUnit, Force, Inertia, Length, Mass,
+    Moment, NumberId, Plain, Stiffness, TorsionalDamping, TorsionalStiffness, WheelPoint,
 };
 pub(crate) use element::{each_number, elements, if_mass};
 pub use formula::{Formula, NamedNumber, Source, Target};
@@ -55,7 +55,7 @@ pub use shape::{Clearance, Shape, ShapeKind, ShapePair};
 pub use shared::SharedModel;
 pub(crate) use solid::about_centre;
 pub use solid::{OpenSurface, Solid};
-pub use spring_table::SpringTable;
+pub use spring_table::{MomentTable, SpringTable};
 pub use sweeping::{SweepMethod, SweepRange, SweepSettings};
 pub use tolerancing::{
     AllocationRule, AllocationSettings, Correlation, Scatter, Tolerance, ToleranceSettings,

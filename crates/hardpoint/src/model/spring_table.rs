@@ -1,4 +1,4 @@
-//! Forces of springs by tables.
+//! Forces and moments of springs by tables.
 
 use crate::linalg::{Segment, monotone};
 use crate::number::Real;
@@ -7,7 +7,7 @@ use crate::number::Real;
 /// last point on either side it continues with the slope there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpringTable {
-    /// Deflection, m, and force, N; both grow in tension.
+    /// Deflection, m, and force, N, or angle, rad, and moment, N m; both grow in tension.
     points: Vec<[f64; 2]>,
     segments: Vec<Segment>,
 }
@@ -36,9 +36,17 @@ impl SpringTable {
         points.iter().rev().map(|p| p.map(|x| 0.0 - x)).collect()
     }
 
-    /// Points: deflection, m, and force, N, both in tension.
+    /// Points: deflection and force, or angle and moment, in SI units.
     pub fn points(&self) -> &[[f64; 2]] {
         &self.points
+    }
+
+    /// Deflection at the first point, or at the last point if `last`; and true if two points there have the same force,
+    /// which continues beyond them.
+    pub fn end(&self, last: bool) -> (f64, bool) {
+        let n = self.points.len();
+        let [end, beside] = if last { [n - 1, n - 2] } else { [0, 1] }.map(|k| self.points[k]);
+        (end[0], end[1] == beside[1])
     }
 
     /// Force at a deflection.
@@ -64,6 +72,22 @@ impl SpringTable {
         } else {
             cubic(c, s)
         }
+    }
+}
+
+impl AsRef<Self> for SpringTable {
+    fn as_ref(&self) -> &Self {
+        self
+    }
+}
+
+/// A moment over an angle, as a curve through points: angle, rad, and moment, N m.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MomentTable(pub SpringTable);
+
+impl AsRef<SpringTable> for MomentTable {
+    fn as_ref(&self) -> &SpringTable {
+        &self.0
     }
 }
 

@@ -104,6 +104,27 @@ fn a_progressive_spring_follows_its_free_length_and_its_scale() {
 }
 
 #[test]
+fn a_curve_about_a_joint_follows_its_factor_and_is_a_stiffness_on_a_line() {
+    let with = |points: Vec<[f64; 2]>, k: f64, factor: NumberDraft| {
+        let mut draft = press();
+        for force in &mut draft.forces {
+            if let ElementKindDraft::TorsionSpring { stiffness, curve, scale, .. } = &mut force.kind {
+                (*stiffness, *curve, *scale) = (k.into(), Some(points.clone()), Some(factor.clone()));
+            }
+        }
+        draft
+    };
+    // 1 + 2.5 * 0.8 is the stiffness of the press.
+    let line = with(vec![[-0.1, -0.08], [0.0, 0.0], [0.3, 0.24]], 1.0, 2.5.into());
+    for formulation in [Formulation::Relative, Formulation::Absolute] {
+        same(&run(&press(), formulation), &run(&line, formulation), &LOADS);
+    }
+    let points = vec![[-2.0, -9.0], [-0.6, -0.7], [0.2, 0.3], [1.0, 4.0], [3.0, 30.0]];
+    let draft = with_parameter(with(points, 1.0, given("harder")), "harder", 0.9);
+    differentiated(&draft, &LOADS);
+}
+
+#[test]
 fn a_point_of_a_spring_table_has_its_force() {
     // The lever's spring, 0.3 m long in the design configuration, becomes 0.05 m shorter: its force is that of the
     // table.

@@ -182,6 +182,8 @@ pub fn press() -> Draft {
                 coordinate: None,
                 stiffness: 3.0.into(),
                 equilibrium: Some(0.2.into()),
+                curve: None,
+                scale: None,
                 damping: Some(0.1.into()),
             },
         ),

@@ -230,7 +230,7 @@ impl<'a> Side<'_, 'a> {
     }
 
     /// Changes the signs of an element's numbers that refer to a coordinate with the opposite sign in the mirror.
-    fn coordinate_values(&self, name: &str, table: &mut DeTable<'a>) {
+    fn coordinate_values(&mut self, name: &str, table: &mut DeTable<'a>) {
         let Some(original) = self.entry("forces", name) else { return };
         let kind = word(original, "type").and_then(|t| ElementType::ALL.iter().find(|e| e.name == t));
         let Some(fields) =
@@ -245,7 +245,28 @@ impl<'a> Side<'_, 'a> {
         for field in fields {
             if let FieldKind::Number(ElementUnit::Length | ElementUnit::Angle) = field.kind {
                 table.get_mut(field.key).into_iter().for_each(|v| turn_sign(v, self.rule.numbers));
+            } else if let FieldKind::Table | FieldKind::MomentTable = field.kind {
+                self.reverse_curve(name, table, field.key);
             }
+        }
+    }
+
+    /// Reverses a curve of an element: its force and its deflection are opposite in the mirror.
+    fn reverse_curve(&mut self, name: &str, table: &mut DeTable<'a>, key: &str) {
+        let Some(curve) = table.get_mut(key) else { return };
+        let at = curve.span();
+        let Some(points) = list_of(curve) else {
+            let other = self.rule.twin(name).unwrap_or_default();
+            let message = format!("the curve of `{name}` is in a file, and cannot be reversed for `{other}`");
+            let help =
+                format!("write the points in the model, or write `{other}` as well, with a file of its own");
+            self.refused.push((at, message, help));
+            return;
+        };
+        let turned: Vec<_> = std::mem::replace(points, DeArray::new()).into_iter().collect();
+        *points = turned.into_iter().rev().collect();
+        for point in points.iter_mut() {
+            list_of(point).into_iter().for_each(|point| each(point, self.rule.numbers, |_| true));
         }
     }
 
@@ -273,23 +294,7 @@ impl<'a> Side<'_, 'a> {
         for (direction, _) in DIRECTION_NAMES.iter().zip(&signs).filter(|(_, sign)| **sign < 0) {
             let preload = format!("preload_{direction}");
             table.get_mut(preload.as_str()).into_iter().for_each(|v| turn_sign(v, self.rule.numbers));
-            let Some(curve) = table.get_mut(format!("curve_{direction}").as_str()) else { continue };
-            let at = curve.span();
-            let Some(points) = list_of(curve) else {
-                let other = self.rule.twin(name).unwrap_or_default();
-                let message =
-                    format!("the curve of `{name}` is in a file, and cannot be reversed for `{other}`");
-                let help = format!(
-                    "write the points in the model, or write `{other}` as well, with a file of its own"
-                );
-                self.refused.push((at, message, help));
-                continue;
-            };
-            let turned: Vec<_> = std::mem::replace(points, DeArray::new()).into_iter().collect();
-            *points = turned.into_iter().rev().collect();
-            for point in points.iter_mut() {
-                list_of(point).into_iter().for_each(|point| each(point, self.rule.numbers, |_| true));
-            }
+            self.reverse_curve(name, table, &format!("curve_{direction}"));
         }
         let rows = table.get_mut("matrix").and_then(list_of);
         for (row, sign) in rows.into_iter().flat_map(|rows| rows.iter_mut()).zip(&signs) {

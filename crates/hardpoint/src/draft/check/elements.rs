@@ -4,11 +4,13 @@ use crate::draft::measure::Field;
 use crate::draft::{DraftError, ElementDraft, FieldDraft, FieldKind, NumberDraft, Section};
 use crate::joint::{DIRECTION_NAMES, Quantity};
 use crate::law::Law;
-use crate::model::element::{CoupledStiffness, ElasticLaw, JointFriction, StiffnessEntry};
+use crate::model::element::{
+    CURVES, CoupledStiffness, ElasticLaw, Elasticity, JointFriction, SCALES, StiffnessEntry,
+};
 use crate::model::{
-    Angle, BodyId, Coupling, CubicStiffness, Damping, Density, Direction, Element, ElementKind, ElementUnit,
-    Force, GROUND, Inertia, JointId, Length, Mass, Model, Moment, NumberId, Plain, PointId, SpringTable,
-    Stiffness, TorsionalDamping, TorsionalStiffness, each_number, elements,
+    Angle, BodyId, Coupling, CubicStiffness, CubicTorsionalStiffness, Damping, Density, Direction, Element,
+    ElementKind, ElementUnit, Force, GROUND, Inertia, JointId, Length, Mass, Model, Moment, NumberId, Plain,
+    PointId, SpringTable, Stiffness, TorsionalDamping, TorsionalStiffness, each_number, elements,
 };
 
 use super::{Checker, Here, MeasureCheck, PERPENDICULAR_TOLERANCE};
@@ -62,8 +64,12 @@ impl Checker<'_> {
             SpringTable::new(&if is_compression { SpringTable::turned(points) } else { points.to_vec() });
         if let Err(why) = &table {
             let message = format!("the table of `{name}` {why}");
+            let point = match key.contains("about") {
+                true => "[angle, moment]",
+                false => "[deflection, force]",
+            };
             self.fault("HP0252", here.key(key), message)
-                .help("give at least two points `[deflection, force]`, with increasing deflections");
+                .help(format!("give at least two points `{point}`, in increasing order"));
         }
         table.ok()
     }
@@ -171,6 +177,39 @@ impl ElementCheck<'_, '_> {
                 }
             }
             (Some(_) | None, None) => {}
+        }
+    }
+
+    /// HP0251, HP0252: factors without a curve, and curves that fall by more than the stiffness at zero deflection.
+    pub fn check_curves(&mut self, law: &ElasticLaw<'_>) {
+        for (k, of) in law.directions.iter().enumerate() {
+            self.check_scale(of.scale.map(Plain), SCALES[k], of, CURVES[k]);
+            let Some(curve) = of.curve else { continue };
+            let stiffness: f64 = law.stiffnesses(k, k).map(|n| self.value(n)).sum();
+            let factor = of.scale.map_or(1.0, |n| self.value(n));
+            if stiffness + factor * curve.at(0.0)[1] < 0.0 {
+                let message = format!("`{}` of `{}` falls at zero deflection", CURVES[k], self.name);
+                self.fault("HP0252", CURVES[k], message)
+                    .note("the force would push the second body away from where it is without load")
+                    .help(format!(
+                        "give points whose force grows with the deflection there, or a larger stiffness `{}`",
+                        DIRECTION_NAMES[k]
+                    ));
+            }
+        }
+    }
+
+    /// HP0251: a factor without the curve that it multiplies.
+    pub fn check_scale(
+        &mut self,
+        scale: Option<Plain>,
+        key: &'static str,
+        law: &Elasticity<'_>,
+        curve: &str,
+    ) {
+        if scale.is_some() && law.curve.is_none() {
+            let message = format!("`{}` has a `{key}`, but no `{curve}`", self.name);
+            self.fault("HP0251", key, message).help(format!("add `{curve}`, or remove `{key}`"));
         }
     }
 

@@ -9,9 +9,9 @@ use crate::expression::Expression;
 use crate::model::element::{Compliance, CoupledStiffness};
 use crate::model::{
     Axes, AxleMeasure, BodyId, CaseId, ClearanceId, Combination, Dimension, Direction, DriverId, Element,
-    ElementId, JacobianValue, JointId, KnownOrders, Measure, MeasureKind, Metric, NumberId, OrientationAngle,
-    OutputSource, PointId, Ray, ReactionPart, Reduction, Solid, SpringTable, WheelId, WheelMeasure,
-    WheelPoint, loads, of_bodies,
+    ElementId, JacobianValue, JointId, KnownOrders, Measure, MeasureKind, Metric, MomentTable, NumberId,
+    OrientationAngle, OutputSource, PointId, Ray, ReactionPart, Reduction, Solid, SpringTable, WheelId,
+    WheelMeasure, WheelPoint, loads, of_bodies,
 };
 use crate::space::Vec3;
 
@@ -629,6 +629,10 @@ field!(ClearanceId, Clearance, Name: String, |name, key, c| c.check.clearance_na
 field!(Solid, Mesh, Solid: Solid, |solid, _key, _c| Some(*solid));
 field!(Option<SpringTable>, Table, Table: Option<Vec<[f64; 2]>>, may |points, key, c| match points {
     Some(points) => c.check.spring_table(points, c.owner, c.here, key).map(Some),
+    None => Some(None),
+});
+field!(Option<MomentTable>, MomentTable, Table: Option<Vec<[f64; 2]>>, may |points, key, c| match points {
+    Some(points) => c.check.spring_table(points, c.owner, c.here, key).map(|table| Some(MomentTable(table))),
     None => Some(None),
 });
 field!(Option<CoupledStiffness>, Matrix, Matrix: Option<Box<[[NumberDraft; 6]; 6]>>, may |rows, key, c| match rows {
