@@ -1,13 +1,16 @@
-//! Deflections of elastic joints and bushings: the largest of each direction in `deflections.csv` and on the page.
+//! Deflections of elastic joints and bushings: the largest of each direction in `deflections.csv` and on the page; and
+//! curves of forces that a motion leaves.
 
 use std::io::Write;
 
-use hardpoint::load::Loads;
+use hardpoint::Analysis;
+use hardpoint::draft::Section;
+use hardpoint::load::{CurveRange, Loads};
 use hardpoint::model::{Dimension, ElementId, Model};
-use hardpoint_file::Units;
+use hardpoint_file::{Diagnostic, ModelFile, Severity, Units};
 use hardpoint_table::csv::CsvWriter;
 
-use crate::figures::{number, unit, with_unit};
+use crate::figures::{number, rounded, symbol, unit, with_unit};
 use crate::metric::{MetricSensitivity, derivative_cells, derivative_headings};
 use crate::page::Table;
 use crate::record::{Column, record};
@@ -53,6 +56,51 @@ fn dimensions(direction: usize) -> [Dimension; 2] {
 pub(crate) fn curve_name(model: &Model, (element, direction): (ElementId, usize)) -> (String, Dimension) {
     let [dimension, _] = dimensions(direction);
     (format!("{} {}", model.elements[element.0].name, DIRECTIONS[direction]), dimension)
+}
+
+/// Digits of the time at which a deflection is largest.
+const DIGITS: usize = 7;
+
+/// HP0414: warnings about curves that end before the largest deflection of the motion. Those that end with two points of
+/// the same force continue as they are meant.
+pub(crate) fn ends_of_curves(file: &ModelFile) -> Vec<Diagnostic> {
+    let (model, units) = (&file.model, file.units);
+    let curves = model.force_curves();
+    if curves.is_empty() {
+        return Vec::new();
+    }
+    let Ok(analysis) = Analysis::new(model) else { return Vec::new() };
+    let masses = model.elements.iter().filter(|e| e.kind.has_mass()).count();
+    let mut list = Vec::new();
+    for (curve, range) in curves.iter().zip(analysis.curve_ranges()) {
+        let Some(CurveRange { deflections, steps }) = range else { continue };
+        let quantity = curve.quantity(model);
+        let shown = |deflection: f64| {
+            // A compression is a negative extension.
+            let deflection = if curve.key == "compression" { -deflection } else { deflection };
+            with_unit(units.from_si(quantity, deflection), symbol(units, quantity))
+        };
+        for k in [0, 1] {
+            let (end, is_constant) = curve.table.end(k == 1);
+            let is_beyond = if k == 1 { deflections[k] > end } else { deflections[k] < end };
+            if !is_beyond || is_constant {
+                continue;
+            }
+            let (name, end) = (&model.elements[curve.element.0].name, shown(end));
+            let (largest, time) = (shown(deflections[k]), rounded(model.times[steps[k]], DIGITS));
+            let message = format!(
+                "`{}` of `{name}` ends at {end}, and its deflection is {largest} at t = {time} s",
+                curve.key
+            );
+            let place = Some((Section::Forces, curve.element.0 - masses));
+            list.push(
+                file.diagnostic(Severity::Warning, "HP0414", message, place)
+                    .note("beyond its end a curve continues as a straight line with its slope there")
+                    .help("extend the curve as far as the motion goes, or reduce the load or the travel"),
+            );
+        }
+    }
+    list
 }
 
 impl DeflectionFact {

@@ -22,6 +22,7 @@ use hardpoint_study::envelope::EnvelopeStop;
 use crate::assembly::GapFact;
 use crate::clearance::drivers;
 use crate::course::Course;
+use crate::deflection::ends_of_curves;
 use crate::facts::{Facts, VariableAdmissibility};
 use crate::figures::{names, number, quoted, rounded, some_in_words, symbol, unit, variable_unit, with_unit};
 use crate::joint_limits::JointLimitFact;
@@ -43,6 +44,7 @@ pub fn all(file: &ModelFile, summary: &Summary, course: &Course, outputs: Option
         list.extend(summary.margin.as_ref().and_then(|m| margin(file, m)));
     }
     list.extend(JointLimitFact::warnings(&summary.joint_limits, file));
+    list.extend(ends_of_curves(file));
     list.extend(residual(file, &summary.model, summary.effort.worst_residual_si));
     list.extend(loads(file, course));
     list.extend(ended.as_ref().map(|s| stop(file, s, course.steps, outputs)));

@@ -208,3 +208,42 @@ steps = 4
     assert_eq!(redundancy.count, 5);
     assert_eq!(redundancy.joints, ["left_hinge", "right_hinge", "twist"]);
 }
+
+/// A body that is pushed along x beyond the curves of its bushing and its springs.
+#[test]
+fn curves_that_end_before_the_largest_deflection_are_named_with_it() {
+    let text = r#"
+name = "pushed"
+units = { length = "mm", angle = "deg" }
+bodies = { b = {} }
+points = { p = { body = "b", at = [100, 0, 0] } }
+equilibrium = {}
+time = { end = 1, steps = 4 }
+[joints]
+j = { type = "fixed", bodies = ["ground", "b"], at = [0, 0, 0] }
+[forces]
+push = { type = "force", at = "p", force = 1, along = "x", law = "100*t" }
+soft = { type = "elastic_joint", joint = "j", curve_x = [[-1, -40], [0, 0], [1, 40]] }
+pulled = { type = "spring", from = { body = "ground", at = [0, 0, 0] }, to = "p", extension = [[-1, 0], [0, 0], [1, 10], [2, 10]] }
+pressed = { type = "spring", from = { body = "ground", at = [200, 0, 0] }, to = "p", compression = [[-1, 0], [0, 0], [1.5, 5]] }
+"#;
+    let file = hardpoint_file::parse(text, "pushed.toml").unwrap_or_else(|e| panic!("{e}"));
+    let analysis = Analysis::new(&file.model).unwrap();
+    let solution = analysis.run();
+    let x = solution.measured.index("p.x").unwrap();
+    let largest = 1e3 * solution.measured.value(4, x)[0] - 100.0;
+    assert!(largest > 2.0, "{largest}");
+    let course = Course::of(&file.model, &solution);
+    let summary = Summary::new(&file, &analysis, &course);
+    let found = hardpoint_report::diagnose::all(&file, &summary, &course, None);
+    let ends: Vec<&str> = found.iter().filter(|d| d.code == "HP0414").map(|d| d.message.as_str()).collect();
+    // The curve of `pulled` is constant at both ends.
+    let there = hardpoint_report::figures::with_unit(largest, "mm");
+    assert_eq!(
+        ends,
+        [
+            format!("`curve_x` of `soft` ends at 1 mm, and its deflection is {there} at t = 1 s"),
+            format!("`compression` of `pressed` ends at 1.5 mm, and its deflection is {there} at t = 1 s"),
+        ]
+    );
+}

@@ -48,5 +48,5 @@ pub(crate) use compliance::Compliances;
 pub(crate) use gradient::LoadGradients;
 pub(crate) use opening_loads::{ElementTurns, GivenLoads, OpeningLoads};
 pub(crate) use program::{RecordedLoads, hindrance};
-pub use results::{Deflection, DriverLoad, JointLoad, LargestDeflection, Loads};
+pub use results::{CurveRange, Deflection, DriverLoad, JointLoad, LargestDeflection, Loads};
 pub(crate) use solver::{LoadSolver, load_measures};

@@ -57,6 +57,31 @@ pub struct LargestDeflection {
     pub d: Vec<f64>,
 }
 
+/// Range of the deflections of a curve over a motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurveRange {
+    /// Least and greatest deflection, m or rad.
+    pub deflections: [f64; 2],
+    /// Numbers of their output times; the first of equal deflections counts.
+    pub steps: [usize; 2],
+}
+
+impl CurveRange {
+    /// Range with a further deflection; NaN leaves it as it is.
+    pub(crate) fn with(range: Option<Self>, deflection: f64, step: usize) -> Option<Self> {
+        let Some(mut range) = range else {
+            return deflection.is_finite().then_some(Self { deflections: [deflection; 2], steps: [step; 2] });
+        };
+        if deflection < range.deflections[0] {
+            (range.deflections[0], range.steps[0]) = (deflection, step);
+        }
+        if deflection > range.deflections[1] {
+            (range.deflections[1], range.steps[1]) = (deflection, step);
+        }
+        Some(range)
+    }
+}
+
 /// Loads of all joints and drivers over a motion.
 #[derive(Clone, Debug, Default)]
 pub struct Loads {

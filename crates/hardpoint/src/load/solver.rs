@@ -2,6 +2,7 @@
 
 use crate::design::{DesignMap, Geometry};
 use crate::measure::StepValues;
+use crate::model::element::ForceCurve;
 use crate::model::{Axes, ElementId, JointId, MeasureKind, Model, PointId, ReactionPart};
 use crate::motion::stepper::Stepper;
 use crate::number::{Dual, Real};
@@ -185,6 +186,14 @@ impl<'a> LoadSolver<'a> {
         Deflection {
             displacement: opening.coordinates[direction],
             force: applied.elastic_forces(&opening, &law)[direction],
+        }
+    }
+
+    /// Deflection that the force of a curve depends on; NaN where it is not known.
+    pub fn curve_deflection(&self, curve: &ForceCurve<'_>) -> f64 {
+        match curve.direction {
+            Some(k) => self.deflection((curve.element, k)).displacement,
+            None => self.equilibrium.applied().table_deflection(curve.element).unwrap_or(f64::NAN),
         }
     }
 

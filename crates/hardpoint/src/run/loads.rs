@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use super::sink::NullSink;
 use super::walk::{Scope, SolvedSteps};
 use super::{Analysis, Walk};
-use crate::load::{Deflection, DriverLoad, JointLoad, LargestDeflection, LoadSolver, Loads};
+use crate::load::{CurveRange, Deflection, DriverLoad, JointLoad, LargestDeflection, LoadSolver, Loads};
 use crate::model::{Axes, ElementId, JointId};
 use crate::sensitivity::Admissibility;
 
@@ -19,6 +19,33 @@ impl Analysis<'_> {
     /// The same, with the derivatives of the largest deflections by the design variables.
     pub fn loads_with_sensitivities(&self, design: &[f64]) -> Loads {
         self.loads_in(design, true)
+    }
+
+    /// Range of the deflections of each curve of [`Model::force_curves`] over the motion of the nominal design; `None` if
+    /// none is known.
+    ///
+    /// [`Model::force_curves`]: crate::model::Model::force_curves
+    pub fn curve_ranges(&self) -> Vec<Option<CurveRange>> {
+        let model = self.model();
+        let curves = model.force_curves();
+        let mut ranges = vec![None; curves.len()];
+        if curves.is_empty() {
+            return ranges;
+        }
+        let design = self.prepare(&[], Scope::of_one(false, true));
+        let mut walk = Walk::new(self, &design, vec![false; model.bodies.len()]).with_loads(|plan| {
+            let (map, topology) = (plan.analysis.design_map(), plan.analysis.topology());
+            LoadSolver::new(map, topology, &plan.design.values, Vec::new(), false)
+        });
+        let mut step = 0;
+        walk.all(&mut NullSink, &mut |_| ControlFlow::Continue(()), |_, solved, _, _| {
+            let SolvedSteps::One(_, _, Some(solver), _) = solved else { return };
+            for (curve, range) in curves.iter().zip(&mut ranges) {
+                *range = CurveRange::with(*range, solver.curve_deflection(curve), step);
+            }
+            step += 1;
+        });
+        ranges
     }
 
     fn loads_in(&self, design: &[f64], sensitivities: bool) -> Loads {
