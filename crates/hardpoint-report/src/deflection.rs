@@ -61,8 +61,8 @@ pub(crate) fn curve_name(model: &Model, (element, direction): (ElementId, usize)
 /// Digits of the time at which a deflection is largest.
 const DIGITS: usize = 7;
 
-/// HP0414: warnings about curves that end before the largest deflection of the motion. Those that end with two points of
-/// the same force continue as they are meant.
+/// HP0414: warnings about curves that end before the largest deflection of the motion. Those that end with two points
+/// of the same force continue as they are meant.
 pub(crate) fn ends_of_curves(file: &ModelFile) -> Vec<Diagnostic> {
     let (model, units) = (&file.model, file.units);
     let curves = model.force_curves();

@@ -181,15 +181,15 @@ macro_rules! elements {
             curve_about_z: Option<Vec<[f64; 2]>> => Option<MomentTable>,
             /// Factor of the forces of `curve_x`. Default: 1.
             scale_x: Option<NumberDraft> => Option<Plain>,
-            /// Of `curve_y`.
+            /// Factor of `curve_y`.
             scale_y: Option<NumberDraft> => Option<Plain>,
-            /// Of `curve_z`.
+            /// Factor of `curve_z`.
             scale_z: Option<NumberDraft> => Option<Plain>,
             /// Factor of the moments of `curve_about_x`. Default: 1.
             scale_about_x: Option<NumberDraft> => Option<Plain>,
-            /// Of `curve_about_y`.
+            /// Factor of `curve_about_y`.
             scale_about_y: Option<NumberDraft> => Option<Plain>,
-            /// Of `curve_about_z`.
+            /// Factor of `curve_about_z`.
             scale_about_z: Option<NumberDraft> => Option<Plain>,
             /// Preload: the force that pushes the second body along x in the design configuration.
             preload_x: Option<NumberDraft> => Option<Force>,

@@ -21,8 +21,8 @@ impl Analysis<'_> {
         self.loads_in(design, true)
     }
 
-    /// Range of the deflections of each curve of [`Model::force_curves`] over the motion of the nominal design; `None` if
-    /// none is known.
+    /// Range of the deflections of each curve of [`Model::force_curves`] over the motion of the nominal design;
+    /// `None` if no deflection is known.
     ///
     /// [`Model::force_curves`]: crate::model::Model::force_curves
     pub fn curve_ranges(&self) -> Vec<Option<CurveRange>> {
