@@ -93,7 +93,7 @@ impl Descent<'_> {
         let residual = left / self.best.gradient_scale(&spans, self.steepest);
         let left_of_start = left / weight.max(f64::MIN_POSITIVE);
         let here = self.optimality(&self.best);
-        (residual <= OPTIMAL).then(|| Optimality { residual, left_of_start, is_corner: true, ..here })
+        (residual <= OPTIMAL).then_some(Optimality { residual, left_of_start, is_corner: true, ..here })
     }
 }
 
