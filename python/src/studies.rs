@@ -63,6 +63,15 @@ type Searched = (String, Option<Vec<f64>>, Option<Vec<f64>>);
 /// Group of variables with a common deviation: its name, its members, and the deviation of a member in their unit.
 type Group = (String, Vec<String>, f64);
 
+/// The group of a model.
+fn prior_group(file: &ModelFile, (name, members, within): Group) -> Result<PriorGroup, RequestError> {
+    let members = members.iter().map(|name| variable(&file.model, name));
+    let variables = members.collect::<Result<Vec<VariableId>, RequestError>>()?;
+    let quantity = variables.first().map(|v| file.model.variables[v.0].quantity);
+    let within = quantity.map_or(within, |quantity| file.units.to_si(quantity, within));
+    Ok(PriorGroup { name, variables, within })
+}
+
 impl Model {
     /// Values of all variables of a design, in the units of the file.
     fn values_of(&self, changes: &[f64]) -> Vec<f64> {
@@ -273,14 +282,8 @@ impl Model {
             Ok((variable, file.units.to_si(file.model.variables[variable.0].quantity, sigma)))
         };
         let priors = priors.into_iter().map(prior).collect::<Result<_, RequestError>>();
-        let group = |(name, members, within): Group| {
-            let members = members.iter().map(|name| variable(&file.model, name));
-            let variables = members.collect::<Result<Vec<VariableId>, RequestError>>()?;
-            let quantity = variables.first().map(|v| file.model.variables[v.0].quantity);
-            let within = quantity.map_or(within, |quantity| file.units.to_si(quantity, within));
-            Ok(PriorGroup { name, variables, within })
-        };
-        let groups = groups.into_iter().map(group).collect::<Result<_, RequestError>>();
+        let groups =
+            groups.into_iter().map(|group| prior_group(file, group)).collect::<Result<_, RequestError>>();
         let overrides = calibrate::Overrides {
             variables,
             priors: priors.map_err(Failure::from)?,

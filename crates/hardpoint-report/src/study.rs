@@ -1,4 +1,5 @@
-//! Facts that several studies have: costs, values before and after, values of variables, moved hardpoints, failed designs.
+//! Facts that several studies have: costs, values before and after, values of variables, moved hardpoints, failed
+//! designs.
 
 use hardpoint::joint::Quantity;
 use hardpoint::measure::Output;

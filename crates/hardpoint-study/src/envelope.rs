@@ -280,7 +280,7 @@ pub fn envelope(
     })
 }
 
-/// Surface with cells so small that it deviates by at most `half`, or the last one that there is time for. The coarse
+/// Surface with cells so small that it deviates by at most `half`, or the last one before the time limit. The coarse
 /// surface is the first candidate.
 fn refined(
     coarse: Option<Triangles>,

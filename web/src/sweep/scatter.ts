@@ -16,7 +16,8 @@ const FEW = 200
 
 /**
  * Swept designs as points over two of their variables and metrics, and what Sobol's indices say of the metric that is
- * shown. The index of a point that is pressed, or dragged along, is passed on. Above the plot is the answer of the study.
+ * shown. The index of a point that is pressed, or dragged along, is passed on. Above the plot is the answer of the
+ * study.
  */
 export function sweepPlot(sweep: Sweep, setDesign?: (point: number) => void, answer?: HTMLElement): HTMLElement {
   return new Scatter(sweep, setDesign, answer).element

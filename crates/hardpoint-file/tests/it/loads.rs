@@ -353,7 +353,7 @@ fn make_heavy(path: &Path) -> ModelFile {
     let mut document: DocumentMut = std::fs::read_to_string(path).unwrap().parse().unwrap();
     if document.contains_key("masses") {
         // Its own masses and forces are the subject of another test.
-        for key in ["masses", "forces", "gravity", "measures", "metrics", "optimize"] {
+        for key in ["masses", "forces", "gravity", "measures", "metrics", "optimize", "page"] {
             document.remove(key);
         }
         std::fs::write(path, document.to_string()).unwrap();

@@ -48,7 +48,7 @@ fn goals_and_limits_are_read_in_si() {
     let names: Vec<&str> = o.variables.iter().map(|v| model.variables[v.0].name.as_str()).collect();
     // All that have bounds, in the order of the file's variables.
     assert_eq!(names, ["reach", "A_x", "A_y", "A_z"]);
-    assert_eq!((o.starts, o.iterations), (5, 100));
+    assert_eq!((o.starts, o.iterations), (5, 1000));
     let degree = 1_f64.to_radians();
     let near = |a: f64, b: f64| (a - b).abs() <= 1e-12 * b.abs();
     // 10 per mm is 10000 per m; 2 mm per deg is 2e-3/degree m per rad, and 3 per (mm per deg) 3e3*degree.

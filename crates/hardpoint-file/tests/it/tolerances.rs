@@ -736,8 +736,8 @@ fn the_play_of_a_slider_crank_has_its_closed_form() {
     }
 }
 
-/// The follower of a four-bar turns by the offset along the coupler over the arm `b sin(mu)`, for each of four pins. The
-/// band holds whatever places the pins have in their holes.
+/// The follower of a four-bar turns by the offset along the coupler over the arm `b sin(mu)`, for each of four pins.
+/// The band holds whatever places the pins have in their holes.
 #[test]
 fn the_play_of_a_four_bar_has_its_closed_form() {
     let text = r#"

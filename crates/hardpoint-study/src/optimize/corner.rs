@@ -1,7 +1,7 @@
 //! Corners of the objective: optima at which its gradient jumps.
 //!
-//! Where singular values coincide, their largest or least has no gradient, and no sequence of gradients tends to zero.
-//! Such a design is an optimum to first order if gradients beside it balance each other:
+//! The largest of two singular values has no gradient at a design at which they coincide, and no sequence of gradients
+//! tends to zero. Such a design is an optimum to first order if gradients beside it balance each other:
 //!
 //! ```text
 //! sum of w_k grad f(b_k) + sum of l_i grad c_i = 0,    w_k >= 0,    sum of w_k = 1,    l_i >= 0            (Clarke)

@@ -114,7 +114,7 @@ impl Request {
     /// Checks the number of a selected design of the front.
     ///
     /// # Errors
-    /// A [`RequestError`] if the front cannot have so many designs.
+    /// A [`RequestError`] if the front has fewer designs.
     pub fn check_point(&self, point: Option<usize>) -> Result<(), RequestError> {
         match point {
             Some(k) if k >= self.points => Err(RequestError::invalid(

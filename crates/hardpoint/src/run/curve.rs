@@ -284,14 +284,21 @@ impl<T: Real> SampledCurve<'_, T> {
         }
         let [a, b] = number::both([k, k + 1], |end| number::each(&self.values[end], |x| x.value()));
         let bend = (self.times[k + 1] - self.times[k]) * a[2].abs().max(b[2].abs());
-        let is_known = (a[2] - b[2]).is_finite();
-        is_known && sign * a[1] > 0.0 && sign * b[1] < 0.0 && (a[1] - b[1]).abs() > BENT * bend
+        let change = (a[1] - b[1]).abs();
+        // Rates of a curve that is constant are round-off.
+        let round_off = RATE_ROUND_OFF * (a[0].abs() + b[0].abs()) / self.run();
+        let is_bent = change > f64::max(BENT * bend, round_off);
+        (a[2] - b[2]).is_finite() && sign * a[1] > 0.0 && sign * b[1] < 0.0 && is_bent
     }
 
     /// True if the ends of interval k are so near each other that a kink between them is located.
     pub(super) fn is_at_corner(&self, k: usize) -> bool {
-        let run = self.times[self.values.len() - 1] - self.times[0];
-        self.times[k + 1] - self.times[k] <= AT_CORNER * run
+        self.times[k + 1] - self.times[k] <= AT_CORNER * self.run()
+    }
+
+    /// Length of the run, s.
+    fn run(&self) -> f64 {
+        self.times[self.values.len() - 1] - self.times[0]
     }
 
     /// Value and solved time of the maximum (sign 1) or minimum (-1) at a kink that is located in interval k.
@@ -348,7 +355,7 @@ impl<T: Real> SampledCurve<'_, T> {
             let apart = a[0] - b[0] + u * (a[1] + 0.5 * u * a[2]) - v * (b[1] + 0.5 * v * b[2]);
             u = (u - apart / (a[1] - b[1] + u * a[2] - v * b[2])).clamp(0.0, h);
         }
-        let least = 0.3 * AT_CORNER * (self.times[self.values.len() - 1] - self.times[0]);
+        let least = 0.3 * AT_CORNER * self.run();
         let moved = (u - tangents).abs();
         // The error of the parabolas is to that of the tangents about as that is to the interval.
         let [near, far] = [(4.0 * moved * moved / h).max(least), moved.max(0.01 * h)];
@@ -516,8 +523,7 @@ impl<T: Real> SampledCurve<'_, T> {
             return None;
         }
         let [a, b, c] = [self.times[k - 1], self.times[k], self.times[k + 1]];
-        let run = self.times[self.values.len() - 1] - self.times[0];
-        (f64::min(b - a, c - b) > 2.0 * JUST_BEFORE * run).then_some([a, b, c])
+        (f64::min(b - a, c - b) > 2.0 * JUST_BEFORE * self.run()).then_some([a, b, c])
     }
 
     /// The kink nearest to time k, if it is not within the values of this time and its neighbours.
@@ -636,6 +642,8 @@ const UNRESOLVED: f64 = 1e3;
 /// Change of the rate in an interval beyond which it has a kink, as a multiple of that by the accelerations at both
 /// of its ends.
 const BENT: f64 = 2.0;
+/// Rates that would change a value by less than this fraction of it over the run are round-off.
+const RATE_ROUND_OFF: f64 = 1e-11;
 /// Interval, as a fraction of the run, in which a kink is located.
 pub(super) const AT_CORNER: f64 = 1e-11;
 

@@ -96,19 +96,8 @@ pub(crate) fn dependence(model: &Model, first: DriverId, at: Option<&[TreeRow]>)
     let sizes = |pivots: &[(CoordinateId, f64)]| pivots.iter().map(|(_, x)| x.abs()).collect();
     let (sizes, rigid_pivots) = (sizes(&pivots), sizes(&rigid_pivots));
     let pivots: Vec<CoordinateId> = pivots.into_iter().map(|(c, _)| c).collect();
-    let (mut free, mut free_balls) = (Vec::new(), Vec::new());
-    for c in unknown.iter().filter(|c| !pivots.contains(c)) {
-        let link = &topology[topology[*c].link];
-        let Some(joint) = link.joint else { continue };
-        let step = link.steps.iter().position(|step| step.first == *c && step.freedom.coordinates() == 1);
-        match step {
-            Some(step) => {
-                let freedom = if link.parent_end == 0 { step } else { link.steps.len() - 1 - step };
-                free.push((joint, freedom));
-            }
-            None => free_balls.push(joint),
-        }
-    }
+    let others = unknown.into_iter().filter(|c| !pivots.contains(c));
+    let (free, free_balls) = freedoms(&topology, others);
     let determined = pivots.into_iter().filter_map(|c| match topology[c].set_by {
         SetBy::Driver(d) => Some(d),
         SetBy::Block { .. } => None,
@@ -120,6 +109,27 @@ pub(crate) fn dependence(model: &Model, first: DriverId, at: Option<&[TreeRow]>)
         pivots: sizes,
         rigid_pivots,
     }
+}
+
+/// Freedoms of joints with these coordinates, and joints of which they are a part of the rotation of a ball.
+fn freedoms(
+    topology: &Topology,
+    coordinates: impl Iterator<Item = CoordinateId>,
+) -> (Vec<(JointId, usize)>, Vec<JointId>) {
+    let (mut free, mut free_balls) = (Vec::new(), Vec::new());
+    for c in coordinates {
+        let link = &topology[topology[c].link];
+        let Some(joint) = link.joint else { continue };
+        let step = link.steps.iter().position(|step| step.first == c && step.freedom.coordinates() == 1);
+        match step {
+            Some(step) => {
+                let freedom = if link.parent_end == 0 { step } else { link.steps.len() - 1 - step };
+                free.push((joint, freedom));
+            }
+            None => free_balls.push(joint),
+        }
+    }
+    (free, free_balls)
 }
 
 /// A row of a position by the coordinates of a tree.
