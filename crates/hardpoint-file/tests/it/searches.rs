@@ -466,6 +466,52 @@ high = { target = 15 }
     near(judged.design[0], 0.03 - 0.02);
 }
 
+/// Goals whose gradient jumps at their optimum; a narrow valley, whose gradients only change fast, has none.
+#[test]
+fn optima_at_corners_of_goals_are_recognised() {
+    let text = r#"
+name = "corner"
+units = { length = "m", angle = "deg" }
+planar = "xy"
+hardpoints = { O = [0, 0], C = [0.4, 0.7] }
+bodies.arm = ["C"]
+joints.pivot = { type = "revolute", bodies = ["ground", "arm"], at = "O" }
+drivers.motor = { joint = "pivot", law = "0" }
+points.C = { body = "arm", at = "C" }
+measures.f = { type = "expression", expression = "GOAL" }
+metrics.goal = { of = "f", take = "value", at = 0 }
+design.x = { move = "C", along = "x", bounds = [-1, 4] }
+design.y = { move = "C", along = "y", bounds = [-2, 2] }
+optimize = { starts = 4, goals = { goal = {} } }
+time = { end = 1, steps = 2 }
+"#;
+    // 2 (x - 1) = 3 - x
+    let sharp = ("max(2*(C.x - 1), 3 - C.x) + abs(C.y - 0.25) + 1.5", [5.0 / 3.0, 0.25], true);
+    // A corner in one direction alone.
+    let edge = ("abs(C.x - 1) + (C.y - C.x)^2 + 0.5", [1.0, 1.0], true);
+    let valley = ("1e4*(C.y - C.x^2)^2 + (C.x - 0.5)^2 + 1", [0.5, 0.25], false);
+    for (goal, place, is_corner) in [sharp, edge, valley] {
+        let file = hardpoint_file::parse(&text.replace("GOAL", goal), "corner.toml")
+            .unwrap_or_else(|e| panic!("{e}"));
+        for search in searched(&file, &asked(&file)).searches {
+            assert_eq!(search.optimality.is_corner, is_corner, "{goal}");
+            // One search makes no further progress in the valley.
+            assert!(
+                search.status == Status::Optimal || !is_corner && search.status == Status::Stuck,
+                "{goal}"
+            );
+            if search.status == Status::Stuck {
+                continue;
+            }
+            let design = search.found.unwrap().design;
+            for (k, nominal) in [0.4, 0.7].into_iter().enumerate() {
+                let found = nominal + design[k];
+                assert!((found - place[k]).abs() < 1e-6, "{goal}: {found} instead of {}", place[k]);
+            }
+        }
+    }
+}
+
 /// A point that may be at either side of an axis: two optima, each with the starts that ended in it.
 #[test]
 fn searches_that_end_in_two_optima_are_gathered() {
