@@ -38,19 +38,14 @@ const TRANSMISSION = /transmission|pressure_angle/
 const LINKAGE_PLOTS = 3
 /** Part of a range below which a quantity counts as constant, and two curves as proportional. */
 const STILL = 1e-4
-/** A curve over an abscissa that it passes several times is no loop if it is narrower than this part of its range. */
-const NARROW = 0.15
-/** Number of intervals of an abscissa between which the width of a curve is measured. */
-const ABSCISSAS = 24
 /** A path is drawn if it is so wide, as a part of its length. */
 const WIDE = 0.02
 
 /**
  * Plots of a report: the requested one, if the run named it; those of the model file, if it has any; toe, camber and so
  * on over wheel travel for wheels and axles; else the measure that judges the linkage, the path of its point, and
- * further measures that the driver does not prescribe. Where several drivers move independently, curves of wheels are
- * drawn over the quantity over which they are narrow, such as the rack's travel, and over time where they would be
- * loops over each.
+ * further measures that the driver does not prescribe. Motions of several independent drivers are drawn over time,
+ * because curves over another quantity would be loops.
  */
 export function sheetOf(report: Report): Sheet {
   const measures = groups(report).find(([name]) => name === 'measure')?.[1] ?? []
@@ -132,48 +127,13 @@ function wheelPlots(report: Report, measures: Quantity[], over?: number): SheetP
   if (report.wheels.length === 0 && !measures.some((one) => ['toe', 'camber'].includes(kindOf(one)))) return []
   const known = measures.filter(({ curves }) => curves[0].some(Number.isFinite))
   const members = WHEEL_PLOTS.map((kinds) => known.filter((one) => one.index !== over && kinds.includes(kindOf(one))))
-  const abscissas = hasOneFreedom(report) ? [] : moved(report)
   const plots = members.flatMap((found) => {
-    const y = found.filter(({ units }) => units[0] === found[0].units[0]).map(({ index }) => index)
-    return y.length > 0 ? [{ y, over: over ?? narrowest(report, y, abscissas) }] : []
+    const same = found.filter(({ units }) => units[0] === found[0].units[0])
+    return same.length > 0 ? [{ y: same.map(({ index }) => index), over }] : []
   })
   // What is held, as toe is by a driver that steers the wheel, is no opening.
   const isHeld = ({ y }: SheetPlot) => !moves(report.quantities[y[0]].curves[0])
   return [...plots.filter((plot) => !isHeld(plot)), ...plots.filter(isHeld)]
-}
-
-/** For each moving driver a quantity that it prescribes, such as the travel of a rack. */
-function moved(report: Report): Quantity[] {
-  const all = groups(report).flatMap(([, members]) => members)
-  const moving = report.drivers.filter(({ travel }) => rangeOf(travel) > 0)
-  return moving.flatMap(
-    ({ travel }) => all.find(({ curves }) => moves(curves[0]) && proportional(curves[0], travel)) ?? [],
-  )
-}
-
-/** The abscissa over which all these curves are narrow, the best of several. */
-function narrowest({ quantities }: Report, y: readonly number[], abscissas: readonly Quantity[]): number | undefined {
-  const spread = ({ curves }: Quantity) =>
-    Math.max(...y.map((index) => loop(quantities[index].curves[0], curves[0]) / rangeOf(quantities[index].curves[0])))
-  const found = abscissas.map((one) => ({ index: one.index, spread: spread(one) })).filter((one) => one.spread < NARROW)
-  return found.sort((a, b) => a.spread - b.spread)[0]?.index
-}
-
-/** Largest difference of two values of a curve at the same abscissa. */
-function loop(y: Curve, x: Curve): number {
-  const [low, high] = extent([x]) ?? [0, 0]
-  let largest = 0
-  for (let part = 1; part < ABSCISSAS; part++) {
-    const at = low + ((high - low) * part) / ABSCISSAS
-    const values: number[] = []
-    for (let k = 1; k < x.length; k++) {
-      if ((x[k - 1] - at) * (x[k] - at) > 0 || x[k] === x[k - 1]) continue
-      values.push(y[k - 1] + ((y[k] - y[k - 1]) * (at - x[k - 1])) / (x[k] - x[k - 1]))
-    }
-    const known = values.filter(Number.isFinite)
-    if (known.length > 0) largest = Math.max(largest, Math.max(...known) - Math.min(...known))
-  }
-  return largest
 }
 
 function linkagePlots(report: Report, measures: Quantity[], over?: number): SheetPlot[] {
