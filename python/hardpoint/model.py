@@ -940,10 +940,9 @@ def _restored(text: str, file: str, files: tuple, added: tuple[bool, bool], case
 
 def _group(name: str, group: Any) -> tuple[str, list[str], float]:
     """Name, members and deviation of a group, from those of the file."""
-    given = by_name(f"group `{name}`", group)
-    if given.keys() != {"variables", "within"}:
+    if not isinstance(group, Mapping) or group.keys() != {"variables", "within"}:
         raise UsageError.saying(f"group `{name}` has `variables` and `within`, as in the file, not {group!r}")
-    return name, listed(f"variables of group `{name}`", given["variables"]), number(f"within of group `{name}`", given["within"])
+    return name, listed(f"groups.{name}.variables", group["variables"]), number(f"groups.{name}.within", group["within"])
 
 
 def _table(data: Any, stack: contextlib.ExitStack) -> str:

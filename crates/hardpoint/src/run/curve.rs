@@ -279,7 +279,9 @@ impl<T: Real> SampledCurve<'_, T> {
     /// True if a maximum (sign 1) or minimum (-1) in interval k is a kink as far as its ends show: the slope changes
     /// its sign there, by more than the accelerations at both ends account for.
     pub(super) fn has_corner(&self, k: usize, sign: f64) -> bool {
-        if !(self.orders == 3 || self.is_located) || self.fold(k).is_some() {
+        let slopes = [self.values[k][1].value(), self.values[k + 1][1].value()];
+        let turns = sign * slopes[0] > 0.0 && sign * slopes[1] < 0.0;
+        if !turns || !(self.orders == 3 || self.is_located) || self.fold(k).is_some() {
             return false;
         }
         let [a, b] = number::both([k, k + 1], |end| number::each(&self.values[end], |x| x.value()));
@@ -288,7 +290,7 @@ impl<T: Real> SampledCurve<'_, T> {
         // Rates of a curve that is constant are round-off.
         let round_off = RATE_ROUND_OFF * (a[0].abs() + b[0].abs()) / self.run();
         let is_bent = change > f64::max(BENT * bend, round_off);
-        (a[2] - b[2]).is_finite() && sign * a[1] > 0.0 && sign * b[1] < 0.0 && is_bent
+        (a[2] - b[2]).is_finite() && is_bent
     }
 
     /// True if the ends of interval k are so near each other that a kink between them is located.
