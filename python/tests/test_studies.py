@@ -139,7 +139,7 @@ def test_calibrate_with_groups():
     assert found.design != model.calibrate(data).design
     with pytest.raises(hardpoint.UsageError, match="`variables` and `within`"):
         model.calibrate(data, groups={"top": ["strut_top_x", "strut_top_y"]})
-    with pytest.raises(hardpoint.StudyError, match="fewer than two different members"):
+    with pytest.raises(hardpoint.UsageError, match="fewer than two different members"):
         model.calibrate(data, groups={"top": {**group, "variables": ["strut_top_x"]}})
 
 
