@@ -91,7 +91,10 @@ describe('the card of a value', () => {
     await page.getByTestId('card-camber').hover()
     await goal.click()
     await expect.poll(() => page.getByTestId('goal-of').inputValue()).toBe('of camber')
+    // The pointer is away from the cards: one that it is on has the button.
+    await page.getByTestId('scrub').hover()
     await page.getByTestId('card-half_track').focus()
+    await page.getByLabel('Goal of half_track').waitFor({ timeout: 10_000 })
     await page.keyboard.press('Tab')
     expect(await page.evaluate(() => document.activeElement!.getAttribute('aria-label'))).toBe('Goal of half_track')
     await page.keyboard.press('Enter')
