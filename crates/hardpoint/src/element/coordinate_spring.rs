@@ -32,7 +32,7 @@ macro_rules! coordinate_spring {
                     axes: [None; 2],
                     dimension: $dimension,
                     given: [None; 3],
-                    table: self.law().curve,
+                    table: self.law().curve.map(|curve| ("curve", curve)),
                     law: None,
                     is_arithmetic: self.curve.is_none(),
                     compliance: Compliance::Element,

@@ -9,7 +9,13 @@ use crate::space::{Real, Wrench};
 impl Spring {
     /// Table, if the spring has one: tension over deflection.
     fn table(&self) -> Option<&SpringTable> {
-        self.extension.as_ref().or(self.compression.as_ref())
+        self.named_table().map(|(_, table)| table)
+    }
+
+    /// The table after its key in model files.
+    fn named_table(&self) -> Option<(&'static str, &SpringTable)> {
+        let compression = || Some(("compression", self.compression.as_ref()?));
+        self.extension.as_ref().map(|table| ("extension", table)).or_else(compression)
     }
 
     /// Length in the design configuration, which depends on the design.
@@ -48,7 +54,7 @@ impl ForceProperties for Spring {
             axes: [None; 2],
             dimension: Dimension::FORCE,
             given: [self.preload.map(|n| n.0), None, None],
-            table: self.table(),
+            table: self.named_table(),
             law: None,
             is_arithmetic: self.table().is_none(),
             compliance: Compliance::Element,

@@ -503,8 +503,8 @@ pub struct Properties<'a> {
     pub dimension: Dimension,
     /// Forces or moments that the element defines.
     pub given: [Option<NumberId>; 3],
-    /// Table of its force.
-    pub table: Option<&'a SpringTable>,
+    /// Table of its force, after its key in model files.
+    pub table: Option<(&'static str, &'a SpringTable)>,
     /// The law that it is multiplied by.
     pub law: Option<&'a Law>,
     /// True if its formula is arithmetic on where bodies are, which can be recorded: it looks up no table, and has no
@@ -843,7 +843,8 @@ impl ElementKind {
     pub fn given_force(&self, model: &Model) -> f64 {
         let Some(Properties { given, table, dimension, .. }) = self.force(model) else { return 0.0 };
         let given = given.into_iter().flatten().map(|n| model.numbers[n.0].value.abs()).reduce(f64::max);
-        let in_table = || table.map_or(0.0, |t| t.points().iter().map(|p| p[1].abs()).fold(0.0, f64::max));
+        let in_table =
+            || table.map_or(0.0, |(_, t)| t.points().iter().map(|p| p[1].abs()).fold(0.0, f64::max));
         let force = given.unwrap_or_else(in_table);
         if dimension == Dimension::MOMENT { force / model.size() } else { force }
     }
@@ -945,12 +946,7 @@ impl Model {
         let mut curves = Vec::new();
         for (e, Element { kind, .. }) in self.elements.iter().enumerate() {
             let element = ElementId(e);
-            if let Some(table) = kind.force(self).and_then(|force| force.table) {
-                let key = if let ElementKind::Spring(spring) = kind {
-                    if spring.compression.is_some() { "compression" } else { "extension" }
-                } else {
-                    "curve"
-                };
+            if let Some((key, table)) = kind.force(self).and_then(|force| force.table) {
                 curves.push(ForceCurve { element, direction: None, key, table });
             }
             let Some(law) = kind.elastic_law() else { continue };

@@ -370,8 +370,11 @@ impl Analysis<'_> {
             for clearance in clearances_of(model, metric.of) {
                 let pairs: Vec<_> = model.clearances[clearance.0].pairs.iter().map(|p| p.shapes).collect();
                 if pairs.iter().any(|shapes| has_surface(model, *shapes)) {
-                    let times = |sign: &f64| self.hidden_extremum(design, solution, &pairs, *sign, window);
-                    found.extend(signs.iter().flat_map(times));
+                    let mut curves = Curves::new(model, &pairs);
+                    curves.add(self, design, &solution.motion);
+                    for sign in signs {
+                        found.extend(self.hidden_extremum(design, solution, &mut curves, *sign, window));
+                    }
                 }
             }
         }
@@ -379,19 +382,17 @@ impl Analysis<'_> {
         found
     }
 
-    /// Times about the greatest (sign 1) or least (-1) value of the least distance of pairs within a window, if it is
-    /// beyond those at the times of a solution.
+    /// Times about the greatest (sign 1) or least (-1) value of the least distance of all pairs within a window, if it
+    /// is beyond those at the times of a solution. The curves have these times, and are given further ones.
     fn hidden_extremum(
         &self,
         design: &[f64],
         solution: &Solution,
-        pairs: &[[ShapeId; 2]],
+        curves: &mut Curves<'_>,
         sign: f64,
         window: Option<[f64; 2]>,
     ) -> Vec<f64> {
         let known = &solution.motion.times;
-        let mut curves = Curves::new(self.model(), pairs);
-        curves.add(self, design, &solution.motion);
         for _ in 0..MOST_PASSES {
             let add = curves.hidden(sign, window);
             if add.is_empty() || self.is_ended() {
