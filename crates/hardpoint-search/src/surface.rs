@@ -175,13 +175,24 @@ impl Search<'_> {
         if self.of.left.get() == 0 {
             return None;
         }
-        let values = nearby.parts.iter().map(|(_, k)| (self.of.part(*k, middle), *k));
-        let mut parts: Vec<(f64, usize)> = values.collect();
-        parts.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let least = parts.first().map_or(f64::INFINITY, |(value, _)| *value);
-        if least.abs() > reach {
+        let way = (middle - nearby.middle).norm();
+        let (mut least, mut parts) = (f64::INFINITY, Vec::new());
+        for (before, k) in &nearby.parts {
+            // Neither this part nor those after it are the least anywhere in the cube.
+            if before - way > least + 2.0 * reach {
+                break;
+            }
+            let value = self.of.part(*k, middle);
+            least = least.min(value);
+            if least < -reach {
+                return Some(());
+            }
+            parts.push((value, *k));
+        }
+        if least > reach {
             return Some(());
         }
+        parts.sort_by(|a: &(f64, usize), b| a.0.total_cmp(&b.0));
         // A part that is farther by two radii is not the least anywhere in the cube.
         parts.retain(|(value, _)| *value <= least + 2.0 * reach);
         let near = Nearby { middle, parts };

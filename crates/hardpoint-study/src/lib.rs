@@ -80,7 +80,6 @@
 //! ```
 
 pub mod calibrate;
-pub mod difference;
 pub mod envelope;
 pub mod grid;
 pub mod map;
@@ -93,9 +92,7 @@ pub mod trade_off;
 pub mod verify;
 pub mod whatif;
 
-mod comparison;
 mod evaluation;
-mod magnitude;
 mod position;
 mod progress;
 mod random;
@@ -103,9 +100,10 @@ mod recent;
 mod samples;
 mod validity;
 
-pub use comparison::{Comparison, StepError};
+pub use hardpoint_difference as difference;
+pub use hardpoint_difference::{Comparison, Magnitude, StepError};
+
 pub use evaluation::{DesignEvaluation, EvaluationError, Motions, StudyCost};
-pub use magnitude::Magnitude;
 pub use position::position_model;
 pub use progress::{Control, Progress, Step};
 pub use random::{design_stream, draw};

@@ -3,7 +3,7 @@
 use hardpoint::model::VariableId;
 use hardpoint::run::{Analysis, Solution};
 
-use super::magnitude::Magnitude;
+use hardpoint_difference::Magnitude;
 
 /// Largest ratio of the second-order to the first-order part at which a linear prediction is trusted.
 const LINEAR: f64 = 0.05;

@@ -10,21 +10,9 @@ use std::ops::ControlFlow;
 use hardpoint::model::VariableId;
 use hardpoint::run::{Analysis, Solution};
 use hardpoint::sensitivity::Admissibility;
+use hardpoint_difference::{Comparison, DifferenceScheme, StepError, UndecidedOutputs, finite_differences};
 
-use super::comparison::{Comparison, StepError, UndecidedOutputs};
-use super::difference::{DifferenceScheme, finite_differences};
 use super::progress::{Progress, Step};
-
-/// Tolerance of central differences, relative to the largest sensitivity of the same kind: a quantity passes if it
-/// agrees to this at some step. In a well-conditioned mechanism central differences reach about (machine epsilon)^(2/3)
-/// = 4e-11 at best; accelerations near a limit position lose four digits. Where the differences themselves scatter by
-/// more than this, because of truncation or round-off, their spread is allowed in addition.
-pub const PASS: f64 = 1e-6;
-
-/// Tolerance of one-sided differences. Truncation grows with the step itself, so that they reach (machine
-/// epsilon)^(1/2) = 1.5e-8 at best: 400 times more than central differences. The tolerance is larger by the same
-/// factor.
-pub const PASS_ONE_SIDED: f64 = 4e-4;
 
 /// Options of a verification.
 #[derive(Clone, Debug)]
@@ -48,13 +36,6 @@ impl Default for Options {
     /// Central differences.
     fn default() -> Self {
         Self::new(DifferenceScheme::Central)
-    }
-}
-
-impl DifferenceScheme {
-    /// Tolerance of the differences, relative to the largest sensitivity of the same kind.
-    pub fn tolerance(self) -> f64 {
-        if self == Self::Central { PASS } else { PASS_ONE_SIDED }
     }
 }
 

@@ -3,7 +3,6 @@
 use std::cell::{Cell, RefCell};
 
 use crate::evaluation::StudyCost;
-use crate::magnitude::Magnitude;
 use crate::recent::Recent;
 use crate::request::RequestError;
 use crate::sweep::quantile;
@@ -11,6 +10,7 @@ use hardpoint::joint::Quantity;
 use hardpoint::measure::{Output, outputs};
 use hardpoint::model::{Dimension, DriverId, Model, OutputSource, VariableId};
 use hardpoint::run::Analysis;
+use hardpoint_difference::Magnitude;
 
 use hardpoint_search::{LeastSquares, bounded_least_squares, dot, singular};
 

@@ -3,12 +3,12 @@
 use std::ops::Range;
 
 use crate::evaluation::{DesignEvaluation, Motions, StudyCost};
-use crate::magnitude::Magnitude;
 use hardpoint::model::{Limit, LimitTarget, Metric, Model, OptimizationSettings, Reduction, VariableId};
 use hardpoint::motion::StopKind;
 use hardpoint::number::Dual;
 use hardpoint::run::{MarginDerivatives, MetricParts, MetricUse, Solution, misfits, peaks};
 use hardpoint::sensitivity::Admissibility;
+use hardpoint_difference::Magnitude;
 
 /// Goals and limits of an optimisation, and the motions that they are evaluated in.
 #[derive(Clone, Debug)]

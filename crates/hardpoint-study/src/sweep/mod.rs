@@ -17,10 +17,10 @@ use hardpoint::model::{Model, OutputSource, SweepSettings};
 use hardpoint::run::{Run, Solution};
 
 use super::evaluation::{Motions, StudyCost};
-use super::magnitude::Magnitude;
 use super::request::RequestError;
 use super::samples::{SampleBlock, SampleRun, failure_reason};
 use hardpoint::run::{metric_number, place_of};
+use hardpoint_difference::Magnitude;
 
 pub use indices::{SobolIndex, sobol_indices};
 pub use plan::Plan;

@@ -25,7 +25,6 @@ use hardpoint::run::Run;
 use hardpoint::sensitivity::Admissibility;
 
 use super::evaluation::{DesignEvaluation, EvaluationError, Motions, StudyCost};
-use super::magnitude::Magnitude;
 use super::progress::{Control, Progress, Step};
 use super::request::RequestError;
 pub use allocation::{AllocatedTolerance, Allocation, AllocationError};
@@ -33,6 +32,7 @@ pub use contributions::{Contributions, SpreadModel};
 pub use curves::{BandPoint, CurveBands};
 use deviations::Deviations;
 use hardpoint::run::{metrics, place_of};
+use hardpoint_difference::Magnitude;
 pub use monte_carlo::{FailureGroup, MonteCarlo, SampledCurve, SampledMetric, Yield};
 pub use pins::SideChange;
 pub use request::{Overrides, Request, allocation_rule};

@@ -6,8 +6,8 @@ use hardpoint::run::{Solution, tied_clearances};
 use hardpoint::sensitivity::BodySensitivity;
 use hardpoint::space::Vec3;
 
-use super::difference::Difference;
-use super::magnitude::Magnitude;
+use crate::difference::Difference;
+use crate::magnitude::Magnitude;
 
 /// A sensitivity that changes a quantity by less than this fraction per natural step counts as zero.
 const NEGLIGIBLE: f64 = 1e-3;
@@ -77,7 +77,7 @@ impl Comparison {
     }
 
     /// Compares as [`Comparison::of`], but skips outputs at times at which the differences are undecided.
-    pub(super) fn where_decided(
+    pub fn where_decided(
         model: &Model,
         solution: &Solution,
         d: &Difference,
@@ -119,7 +119,7 @@ impl Comparison {
     /// The smallest spread s of three consecutive steps bounds truncation and round-off at that time: truncation falls
     /// by a factor of 10 (one-sided: 3) from step to step. Only the part of a deviation that exceeds s remains as an
     /// error.
-    pub(super) fn allow_for_spread(
+    pub fn allow_for_spread(
         &mut self,
         model: &Model,
         solution: &Solution,
@@ -182,7 +182,7 @@ impl Comparison {
 
 /// Outputs and times at which there is no derivative, or finite differences cannot decide whether it is right.
 #[derive(Clone, Debug, Default)]
-pub(super) struct UndecidedOutputs {
+pub struct UndecidedOutputs {
     /// `[k * columns + m]`; empty if all are decided.
     places: Vec<bool>,
     columns: usize,

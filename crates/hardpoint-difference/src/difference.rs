@@ -6,6 +6,17 @@ use hardpoint::run::{Analysis, Run, Solution};
 use hardpoint::sensitivity::BodySensitivity;
 use hardpoint::space::Vec3;
 
+/// Tolerance of central differences, relative to the largest sensitivity of the same kind: a quantity passes if it
+/// agrees to this at some step. In a well-conditioned mechanism central differences reach about (machine epsilon)^(2/3)
+/// = 4e-11 at best; accelerations near a limit position lose four digits. Where the differences themselves scatter by
+/// more than this, because of truncation or round-off, their spread is allowed in addition.
+pub const PASS: f64 = 1e-6;
+
+/// Tolerance of one-sided differences. Truncation grows with the step itself, so that they reach (machine
+/// epsilon)^(1/2) = 1.5e-8 at best: 400 times more than central differences. The tolerance is larger by the same
+/// factor.
+pub const PASS_ONE_SIDED: f64 = 4e-4;
+
 /// Pair of designs of a difference quotient.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DifferenceScheme {
@@ -19,6 +30,11 @@ pub enum DifferenceScheme {
 }
 
 impl DifferenceScheme {
+    /// Tolerance of the differences, relative to the largest sensitivity of the same kind.
+    pub fn tolerance(self) -> f64 {
+        if self == Self::Central { PASS } else { PASS_ONE_SIDED }
+    }
+
     /// Designs to solve, in steps from the nominal one.
     fn moves(self) -> &'static [f64] {
         match self {
