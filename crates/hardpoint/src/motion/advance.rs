@@ -49,22 +49,29 @@ pub(crate) fn start_at_rest(one: &mut Stepper<'_>, t: f64) -> Result<(), Box<Sto
 
 /// Solves the design configuration, then moves on to the first output time.
 pub(crate) fn start(one: &mut Stepper<'_>, t: f64) -> Result<(), Box<Stop>> {
-    start_at_design(one)?;
-    // From there, where all drivers are zero, to their values at the first output time.
-    let Mechanism { line, parts, .. } = &mut one.mechanism;
-    for (d, line) in line.iter_mut().enumerate() {
-        *line = [0.0, parts.law(d, t)[0]];
-    }
-    // Where all drivers begin at 0 the design configuration is the first position.
-    if line.iter().any(|[_, to]| to.abs() != 0.0) {
-        // q(f = 0), which is drawn, to q(f(t_0)): all drivers straight there together
-        let ramp = Path::Line { at: t };
-        one.start_on(ramp, 0.0, false)?;
+    if let Some(ramp) = start_on_ramp(one, t)? {
         walk(one, ramp, 1.0)?;
     }
     one.start_on_laws(t, false)?;
     count(one);
     Ok(())
+}
+
+/// Solves the design configuration, where all drivers are zero, and starts on the path from there to their values at
+/// the first output time; `None` if these are zero, too.
+pub(super) fn start_on_ramp(one: &mut Stepper<'_>, t: f64) -> Result<Option<Path>, Box<Stop>> {
+    start_at_design(one)?;
+    let Mechanism { line, parts, .. } = &mut one.mechanism;
+    for (d, line) in line.iter_mut().enumerate() {
+        *line = [0.0, parts.law(d, t)[0]];
+    }
+    if line.iter().all(|[_, to]| to.abs() == 0.0) {
+        return Ok(None);
+    }
+    // q(f = 0), which is drawn, to q(f(t_0)): all drivers straight there together
+    let ramp = Path::Line { at: t };
+    one.start_on(ramp, 0.0, false)?;
+    Ok(Some(ramp))
 }
 
 /// Moves on to the output time t.

@@ -1,7 +1,8 @@
 //! Batch of up to eight designs, solved from one output time to the next by a straight-line program.
 //!
-//! All designs start from the first position of the nominal design, and every check of a single design's step is made
-//! in every lane. If a check fails, each design is solved alone.
+//! All designs start from the nominal design configuration, and go to the first output time as the nominal design does:
+//! all drivers straight there together. Every check of a single design's step is made in every lane. If a check fails,
+//! each design is solved alone.
 
 use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
@@ -12,9 +13,10 @@ use crate::blocks::{AlignedLanes, Blocks, ResultBlock, lanes_of, zeros};
 use crate::model::{BodyId, VariableId};
 use crate::number::each;
 
-use super::advance::laws_are_resolved;
+use super::advance::{laws_are_resolved, start_on_ramp};
 use super::guard::{StepGuard, Steps};
 use super::kinematics::QUADRATIC;
+use super::lookahead::PART_OF_WAY;
 use super::mechanism::Mechanism;
 use super::path::Path;
 use super::path_step::TRUST_FLOOR;
@@ -29,22 +31,30 @@ use super::{Motion, SolverStatistics};
 /// Error of the last prediction below which one correction is enough at the next step.
 const GOOD: f64 = 0.1 * QUADRATIC;
 
-/// Values of the drivers up to an output time: the same for all designs.
+/// Number of steps of a ramp to the first output time per step that the nearest singular position allows where it
+/// begins, and the least and greatest number: determinants vary little over each, so that the designs stay together.
+const RAMP_STEPS: (f64, f64, f64) = (6.0, 8.0, 40.0);
+
+/// Motion of the drivers to a position: the same for all designs.
 #[derive(Clone, Debug)]
 struct Drive {
-    /// Since the output time before.
+    /// Time, or parameter of the ramp from the design configuration to the first output time, there and since the
+    /// position before.
+    t: f64,
     h: f64,
-    /// Speed of the fastest driver (rad, or sizes, per s), now or before.
+    /// Speed of the fastest driver (rad, or sizes, per s or per ramp), now or before.
     fastest: f64,
 }
 
 /// Solver of a batch of designs.
 pub(crate) struct DesignBatch<'m> {
-    /// The nominal design, at the first output time, with the determinants there.
+    /// The nominal design, in the design configuration, with the determinants there.
     nominal: Mechanism<'m>,
     determinants: Vec<f64>,
-    /// Values of the drivers at every output time, up to the first interval in which they do not move smoothly.
+    /// Motion of the drivers to each position: those of the ramp, of which there are this many, then the output times,
+    /// up to the first interval in which the laws are not smooth.
     course: Vec<Drive>,
+    on_ramp: usize,
     drivers: Vec<[f64; ORDERS]>,
     /// Source of programs.
     programs: ProgramOf<'m>,
@@ -86,15 +96,18 @@ pub(crate) struct BatchResults<'f> {
 }
 
 impl<'m> DesignBatch<'m> {
-    /// Solver by these programs. Returns `None` if there is no program, or if the nominal design is not in the design
-    /// configuration at its first output time (the position of `nominal`), because designs could have taken different
-    /// branches before. If `keeps` is true, the results of all output times are stored.
-    pub fn new(mut nominal: Stepper<'m>, programs: ProgramOf<'m>, keeps: bool) -> Option<Self> {
-        if nominal.mechanism.saved.drivers.iter().any(|f| f[0] != 0.0) {
-            return None;
-        }
+    /// Solver by these programs, of designs like the nominal one, which is at its first output time. Returns `None` if
+    /// there is no program. If `keeps` is true, the results of all output times are stored.
+    pub fn new(mut started: Stepper<'m>, programs: ProgramOf<'m>, keeps: bool) -> Option<Self> {
+        let (on_laws, drivers_on_laws) = course(&mut started);
+        let started = started.mechanism;
+        let mut nominal = Stepper::new(started.model, &started.topology, started.parts.clone());
+        let (mut course, mut drivers) = ramp(&mut nominal, *started.model.times.first()?)?;
+        let on_ramp = course.len();
+        course.extend(on_laws);
+        drivers.extend(drivers_on_laws);
         let first = Tape::new(programs(MOST_CORRECTIONS)?);
-        if !first.is_on(&nominal.mechanism.branch) {
+        if !(first.is_on(&started.branch) && first.is_on(&nominal.mechanism.branch)) {
             return None;
         }
         let channels = first.channels().len();
@@ -103,11 +116,11 @@ impl<'m> DesignBatch<'m> {
         tapes[MOST_CORRECTIONS - 1] = Some((first, false));
         let determinants: Vec<f64> = nominal.guard.determinants().collect();
         let guard = StepGuard::new(determinants.len(), 0);
-        let (course, drivers) = course(&mut nominal);
         Some(Self {
             nominal: nominal.mechanism,
             determinants,
             course,
+            on_ramp,
             drivers,
             programs,
             tapes,
@@ -168,11 +181,9 @@ impl<'m> DesignBatch<'m> {
             }
         }
         let mut effort = SolverStatistics { least_pivot_ratio: f64::INFINITY, ..SolverStatistics::default() };
-        for (k, &t) in model.times.iter().enumerate() {
-            if k == 0 {
-                self.start_at(t);
-            }
-            take(DesignStep { batch: self, k, t }).ok()?;
+        for position in 0..self.on_ramp + model.times.len() {
+            take(DesignStep { batch: self, k: position }).ok()?;
+            let Some(k) = position.checked_sub(self.on_ramp) else { continue };
             if self.keeps {
                 let at = widths[1] * k..widths[1] * (k + 1);
                 let Some((tape, _)) = &self.tapes[self.by] else { return None };
@@ -189,48 +200,78 @@ impl<'m> DesignBatch<'m> {
             effort.by_program += 1;
             effort.iterations += self.tape().passes();
             effort.worst_residual = effort.worst_residual.max(self.solved.residuals.largest);
-            effort.note_pivots([self.solved.pivot_ratio].into_iter(), t);
+            effort.note_pivots([self.solved.pivot_ratio].into_iter(), model.times[k]);
         }
         Some(effort)
     }
 
-    /// Range of the values of all bodies at output time k.
+    /// Range of the values of all bodies at output time k; those on the ramp are overwritten.
     fn states_at(&self, k: usize) -> Range<usize> {
         let width = self.tape().sizes()[0];
         let first = if self.keeps { width * k } else { 0 };
         first..first + width
     }
 
-    /// Starts all designs at the position of the nominal one, at the first output time.
-    fn start_at(&mut self, t: f64) {
+    /// Starts all designs in the configuration of the nominal one.
+    fn start(&mut self) {
         let saved = &self.nominal.saved;
         for n in 0..self.known.len() {
             let x = self.tape().channels()[n].saved(&saved.q, &saved.balls);
-            self.known[n] = [[0.0; LANES]; NODES * ORDERS];
-            // q of the nominal design, in every lane, which is also the prediction at distance 0
+            // q of the nominal design, in every lane
             self.known[n][0] = [x; LANES];
         }
-        (self.times, self.count) = ([t; NODES], 1);
         self.guard.start_at(self.determinants.iter().copied());
     }
 }
 
-/// The step of all designs to output time k, or from the nominal design to each of them at the first.
+/// The step of all designs to a position of the course.
+///
+/// Those to the first one, from the nominal design to each of them, and to the first on the laws, from the same place
+/// at the end of the ramp, are no steps over time.
 struct DesignStep<'s, 'm> {
     batch: &'s mut DesignBatch<'m>,
     k: usize,
-    t: f64,
+}
+
+impl DesignStep<'_, '_> {
+    fn is_start(&self) -> bool {
+        self.k == 0 || self.k == self.batch.on_ramp
+    }
 }
 
 impl Step for DesignStep<'_, '_> {
     type Rejection = RoughStep;
 
     fn drive(&mut self) -> Result<(), RoughStep> {
+        if self.k == 0 {
+            self.batch.start();
+        }
+        let is_start = self.is_start();
         let DesignBatch {
-            nominal, course, drivers, programs, tapes, by, missed, count, designs, guard, ..
+            nominal,
+            course,
+            drivers,
+            programs,
+            tapes,
+            by,
+            missed,
+            known,
+            times,
+            count,
+            designs,
+            guard,
+            ..
         } = &mut *self.batch;
         // The laws of all designs are the same; `course` has checked them.
-        guard.fastest_driver = course.get(self.k).ok_or(RoughStep)?.fastest;
+        let drive = course.get(self.k).ok_or(RoughStep)?;
+        guard.fastest_driver = drive.fastest;
+        if is_start {
+            // The place alone is the prediction: rates are those of another path, or unknown.
+            for known in known {
+                known[1..].fill([0.0; LANES]);
+            }
+            (*times, *count) = ([drive.t; NODES], 1);
+        }
         // abs(dq_0) <= 1e-9 at the last step: by (26) one correction reaches round-off at the next, too.
         let is_good = *count == NODES && *missed <= GOOD;
         let corrections = if is_good { 1 } else { MOST_CORRECTIONS };
@@ -263,7 +304,7 @@ impl Step for DesignStep<'_, '_> {
     }
 
     fn correct(&mut self, trust: f64) -> Result<(), RoughStep> {
-        let states_at = self.batch.states_at(self.k);
+        let states_at = self.batch.states_at(self.k.saturating_sub(self.batch.on_ramp));
         let DesignBatch { tapes, by, missed, solved, states, derivatives, .. } = &mut *self.batch;
         let (tape, _) = at_work(tapes, *by);
         let states = &mut Arc::get_mut(states).ok_or(RoughStep)?[states_at];
@@ -273,21 +314,23 @@ impl Step for DesignStep<'_, '_> {
     }
 
     fn check(&mut self) -> Result<(), RoughStep> {
-        let DesignBatch { nominal, tapes, by, times, guard, .. } = &mut *self.batch;
+        let is_start = self.is_start();
+        let DesignBatch { nominal, course, tapes, by, times, guard, .. } = &mut *self.batch;
         let (tape, _) = at_work(tapes, *by);
-        RoughStep::unless(self.k == 0 || tape.speeds_are_smooth(guard))?;
-        // At the first output time a design with determinants near those of the nominal one is on the same branch.
-        let steps = Steps { from: times[0], ends: &[self.t] };
+        RoughStep::unless(is_start || tape.speeds_are_smooth(guard))?;
+        // In the design configuration a design with determinants near those of the nominal one is on the same branch.
+        let steps = Steps { from: times[0], ends: &[course[self.k].t] };
         RoughStep::unless(
             guard.determinants_are_even(&nominal.state.factors, steps, |b, _| tape.determinant(b)),
         )
     }
 
     fn accept(&mut self) {
-        let DesignBatch { tapes, by, known, times, count, guard, .. } = &mut *self.batch;
+        let is_start = self.is_start();
+        let DesignBatch { course, tapes, by, known, times, count, guard, .. } = &mut *self.batch;
         guard.accept();
-        if self.k == 0 {
-            // From one design to another: no node, and no change of a determinant over time.
+        if is_start {
+            // Neither a node, nor a change of a determinant over time.
             *count = 0;
             guard.forget();
         }
@@ -300,7 +343,7 @@ impl Step for DesignStep<'_, '_> {
             }
         }
         times.rotate_right(1);
-        times[0] = self.t;
+        times[0] = course[self.k].t;
         *count = usize::min(*count + 1, NODES);
     }
 }
@@ -321,8 +364,29 @@ fn course(nominal: &mut Stepper<'_>) -> (Vec<Drive>, Vec<[f64; ORDERS]>) {
         }
         mechanism.saved.drivers.copy_from_slice(&mechanism.drivers);
         mechanism.saved.time = t;
-        course.push(Drive { h, fastest: guard.fastest_driver });
+        course.push(Drive { t, h, fastest: guard.fastest_driver });
         drivers.extend_from_slice(&mechanism.drivers);
     }
     (course, drivers)
+}
+
+/// The way of the nominal design from the design configuration, where it is left, to the first output time: values of
+/// the drivers in even steps, with their rates per ramp. Empty if the drivers begin at zero.
+fn ramp(nominal: &mut Stepper<'_>, t: f64) -> Option<(Vec<Drive>, Vec<[f64; ORDERS]>)> {
+    let (mut course, mut drivers) = (Vec::new(), Vec::new());
+    let Some(path) = start_on_ramp(nominal, t).ok()? else { return Some((course, drivers)) };
+    nominal.examine(path);
+    let Stepper { mechanism, lookahead, .. } = nominal;
+    lookahead.measure_travel(mechanism, path, 1.0);
+    let (per_step, least, most) = RAMP_STEPS;
+    let steps = (per_step * lookahead.part_of_way() / PART_OF_WAY).ceil().clamp(least, most);
+    let ends = mechanism.line.iter().map(|[_, to]| *to);
+    let fastest =
+        ends.clone().zip(&mechanism.driver_units).map(|(to, unit)| to.abs() / unit).fold(0.0, f64::max);
+    for j in 0..=steps as usize {
+        let part = j as f64 / steps;
+        course.push(Drive { t: part, h: if j == 0 { 0.0 } else { 1.0 / steps }, fastest });
+        drivers.extend(ends.clone().map(|to| [to * part, to, 0.0]));
+    }
+    Some((course, drivers))
 }

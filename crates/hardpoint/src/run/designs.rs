@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use hardpoint_tape::LANES;
 
-use crate::measure::{MeasureResults, StepValues};
+use crate::measure::{MeasureResults, PathAngles, StepValues};
 use crate::motion::SolverStatistics;
 use crate::motion::design_batch::DesignBatch;
 use crate::motion::step_program::Purpose;
@@ -199,6 +199,14 @@ impl Analysis<'_> {
             };
             self.program(purpose)
         };
-        DesignBatch::new(self.started()?, Box::new(program), keeps)
+        let started = self.started()?;
+        // Turns of angles are counted over the output times of a batch, and not on the way to the first of them.
+        let begins_elsewhere = started.mechanism.saved.drivers.iter().any(|f| f[0] != 0.0);
+        let counts =
+            || PathAngles::of(self.design_map(), self.topology(), &self.model().whole(&[]), true).is_some();
+        if begins_elsewhere && counts() {
+            return None;
+        }
+        DesignBatch::new(started, Box::new(program), keeps)
     }
 }
