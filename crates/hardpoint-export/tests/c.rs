@@ -28,8 +28,7 @@ const CHANGED: f64 = 2e-12;
 const DERIVATIVE: f64 = 1e-11;
 
 /// Models that have no formulas, with the reason.
-const REFUSED: [(&str, &str); 2] =
-    [("cam", "a point follows a curve"), ("gear_train", "couplers count angles by their predicted turns")];
+const REFUSED: [(&str, &str); 0] = [];
 /// Models whose motion the formulas do not follow to the end, and the reported time.
 const ENDS: [(&str, &str); 1] = [("bricard", "from t =")];
 

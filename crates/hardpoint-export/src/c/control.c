@@ -25,7 +25,7 @@ static double @name@_greater(double a, double b)
     return a > b ? a : b;
 }
 
-@prepare@/* Results at solved coordinates; counts the turns of angles from the position that is passed. */
+@pieces@@prepare@/* Results at solved coordinates; counts the turns of angles from the position that is passed. */
 static int @name@_results(@name@_position *p, @geometry_type@const double qd[], const double qdd[], double *w,
                           @name@_output *o)
 {
@@ -68,7 +68,7 @@ static int @name@_move(@name@_position *p, @geometry_type@const double q[], cons
             p->x[k] += step;
             moved = @name@_greater(moved, fabs(step) / @name@_coordinate_unit[k]);
         }
-        if (!(moved <= @NAME@_LONGEST))
+@pieces_of_position@        if (!(moved <= @NAME@_LONGEST))
             return @NAME@_TOO_FAR;
     }
     for (k = 0; k < @NAME@_DRIVERS; ++k)
@@ -84,7 +84,7 @@ static int @name@_move(@name@_position *p, @geometry_type@const double q[], cons
             return @NAME@_NOT_CONVERGED;
         for (k = 0; k < @NAME@_COORDINATES; ++k)
             p->x[k] = y[k];
-        if (size <= @NAME@_QUADRATIC)
+@pieces_of_position@        if (size <= @NAME@_QUADRATIC)
             break;
         limit = 0.5 * size;
     }

@@ -11,8 +11,8 @@ use std::fmt::Write;
 use std::path::Path;
 
 use hardpoint::measure::{MeasureFormulas, Output, outputs};
-use hardpoint::model::{Model, OutputSource};
-use hardpoint::motion::{DrivenStep, MotionCheck};
+use hardpoint::model::{CURVE_PIECE, Model, OutputSource};
+use hardpoint::motion::{DrivenCurve, DrivenStep, MotionCheck};
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::{Analysis, Run};
 use hardpoint_file::ModelFile;
@@ -40,6 +40,7 @@ const JACOBIAN_DECLARED: &str = include_str!("jacobian.h");
 const SOURCE: &str = include_str!("source.c");
 const LARGER: &str = include_str!("larger.c");
 const MEASURES: &str = include_str!("measures.c");
+const PIECES: &str = include_str!("pieces.c");
 const CONTROL: &str = include_str!("control.c");
 const JACOBIAN: &str = include_str!("jacobian.c");
 // If requested: derivatives, and the design.
@@ -512,9 +513,10 @@ impl Source<'_> {
         if self.has_design() { &[(READ, "b"), (READ, "g")] } else { &[] }
     }
 
-    /// Inputs of the programs of a step: coordinates, drivers and, from the number beside them on, the design.
+    /// Inputs of the programs of a step: coordinates with the pieces of the curves, drivers and, from the number beside
+    /// them on, the design.
     fn step_inputs(&self) -> (Vec<String>, usize) {
-        let mut inputs: Vec<String> = (0..self.step.coordinates.len()).map(|k| format!("x[{k}]")).collect();
+        let mut inputs: Vec<String> = (0..self.step.position_inputs()).map(|k| format!("x[{k}]")).collect();
         let of_driver = |d: usize| ["q", "qd", "qdd"].map(|of| format!("{of}[{d}]"));
         inputs.extend((0..self.step.drivers.len()).flat_map(of_driver));
         let at = inputs.len();
@@ -557,14 +559,17 @@ impl Source<'_> {
     fn write_step_tangents(&self, functions: &mut Functions<'_>) {
         let (name, step) = (&self.name, self.step);
         let (n, drivers) = (step.coordinates.len(), step.drivers.len());
+        let drivers_at = step.position_inputs();
         let design: &[(&str, &str)] = if self.has_design() { &[(READ, "b")] } else { &[] };
         let (mut inputs, at) = self.step_inputs();
-        inputs.extend((0..n).map(|k| format!("dx[{k}]")));
+        // The curves do not change.
+        let change = |k: usize| if k < n { format!("dx[{k}]") } else { "0.0".to_owned() };
+        inputs.extend((0..drivers_at).map(change));
         let of_driver = |d: usize| ["q", "qd", "qdd"].map(|of| format!("along->{of}[{d}]"));
         inputs.extend((0..drivers).flat_map(of_driver));
         inputs.extend(self.design_inputs("along->design"));
         let (direction_type, output_type) = (format!("const {name}_direction *"), format!("{name}_output *"));
-        let of_position = |k: usize| k >= n && (k >= at || (k - n).is_multiple_of(3));
+        let of_position = |k: usize| k >= drivers_at && (k >= at || (k - drivers_at).is_multiple_of(3));
         functions.write(
             ("correct_tangent", "Derivative of the coordinates in a direction."),
             &step.correction.tangent(|k| of_position(k) && self.is_argument(at, k)),
@@ -582,9 +587,10 @@ impl Source<'_> {
         );
     }
 
-    /// True for inputs that programs are differentiated by: those before the design, and its arguments.
+    /// True for inputs of a step that programs are differentiated by: coordinates, drivers, and arguments of the design.
     fn is_argument(&self, design_at: usize, k: usize) -> bool {
-        k < design_at || self.design.contains(&(k - design_at))
+        let is_piece = (self.step.coordinates.len()..self.step.position_inputs()).contains(&k);
+        k < design_at && !is_piece || k >= design_at && self.design.contains(&(k - design_at))
     }
 
     /// Measures by the motion of the bodies, and their derivatives in a direction.
@@ -723,7 +729,11 @@ impl Source<'_> {
         }
         let width = usize::max(2 * step.coordinates.len(), step.coordinates.len() + 1);
         let when = |text: &str| if self.has_design() { self.filled(text, &[]) } else { String::new() };
+        let when_curved =
+            |text: &str| if step.curves.is_empty() { String::new() } else { self.filled(text, &[]) };
         vec![
+            ("pieces", self.pieces()),
+            ("pieces_of_position", when_curved("        @name@_place_pieces(p->x);\n")),
             ("prepare", when(&PREPARE.replace("@calls@", prepare))),
             ("part_of_design", when(PART_OF_DESIGN)),
             ("restore_design", when(RESTORE_DESIGN)),
@@ -736,6 +746,31 @@ impl Source<'_> {
             ("measures", results.trim_end().to_owned()),
             ("start", self.start()),
         ]
+    }
+
+    /// The pieces of the curves, and the function that looks them up; empty without curves.
+    fn pieces(&self) -> String {
+        let (step, name) = (self.step, &self.name);
+        if step.curves.is_empty() {
+            return String::new();
+        }
+        let (mut tables, mut calls) = (String::new(), String::new());
+        for (k, DrivenCurve { coordinate, curve }) in step.curves.iter().enumerate() {
+            let _ = writeln!(tables, "static const double {name}_curve_{k}[][{CURVE_PIECE}] = {{");
+            for piece in curve.pieces() {
+                let _ = writeln!(tables, "    {{{}}},", piece.map(literal).join(", "));
+            }
+            let _ = writeln!(tables, "}};\n");
+            let _ = writeln!(
+                calls,
+                "    {name}_piece({name}_curve_{k}, {}, {}, {}, x[{coordinate}], x + {});",
+                curve.pieces().count(),
+                literal(curve.length()),
+                u8::from(curve.is_closed()),
+                step.coordinates.len() + k * CURVE_PIECE
+            );
+        }
+        tables + &self.filled(PIECES, &[("piece", CURVE_PIECE.to_string()), ("calls", calls)])
     }
 
     /// The function that evaluates the formulas, marks those that are undefined, and counts whole turns.
@@ -763,9 +798,11 @@ impl Source<'_> {
         step.coordinates.iter().enumerate().for_each(|(k, c)| set("x", k, c.start));
         step.drivers.iter().enumerate().for_each(|(k, c)| set("q", k, c.start));
         (0..self.design.len()).for_each(|k| set("design", k, 0.0));
-        let coordinates = step.coordinates.iter().map(|c| c.start);
         let drivers = step.drivers.iter().flat_map(|d| [d.start, 0.0, 0.0]);
-        let inputs: Vec<f64> = coordinates.chain(drivers).chain(step.design.iter().map(|_| 0.0)).collect();
+        let mut inputs: Vec<f64> = step.coordinates.iter().map(|c| c.start).collect();
+        inputs.resize(step.position_inputs(), 0.0);
+        step.place_pieces(&mut inputs);
+        inputs.extend(drivers.chain(step.design.iter().map(|_| 0.0)));
         let mut found = vec![0.0; step.motion.outputs.len()];
         step.motion.evaluate(&inputs, &[], &mut Vec::new(), &mut found);
         for b in 0..step.logarithmic.len() {
@@ -776,6 +813,9 @@ impl Source<'_> {
         for (k, (_, angle)) in self.measures.counted.iter().enumerate() {
             set("angle", k, *angle);
             set("turn", k, 0.0);
+        }
+        if !step.curves.is_empty() {
+            let _ = writeln!(text, "    {}_place_pieces(s->position.x);", self.name);
         }
         if self.has_design() {
             let _ = writeln!(text, "    {}_prepare(s->position.design, s->work, s->geometry);", self.name);
@@ -795,13 +835,18 @@ impl Source<'_> {
         let jacobian = self.filled(JACOBIAN_DECLARED, &[]);
         let field = format!("    {}_measure_value measure[{upper}_MEASURES];\n", self.name);
         let when = |text: String| if self.has_measures() { text } else { String::new() };
+        let coordinates_are = match step.curves.is_empty() {
+            true => "unknown coordinates",
+            false => "unknown coordinates, then the pieces of the curves at the contacts",
+        };
         let mut places = vec![
             ("drivers", step.drivers.len().to_string()),
             ("bodies", (model.bodies.len() - 1).to_string()),
             ("measures", self.measures.list.len().to_string()),
             ("coordinates", step.coordinates.len().to_string()),
             ("blocks", step.logarithmic.len().to_string()),
-            ("coordinates_or_one", step.coordinates.len().max(1).to_string()),
+            ("coordinates_or_one", step.position_inputs().max(1).to_string()),
+            ("coordinates_are", coordinates_are.to_owned()),
             ("blocks_or_one", step.logarithmic.len().max(1).to_string()),
             ("counted_or_one", self.measures.counted.len().max(1).to_string()),
             ("work", sizes.work.max(1).to_string()),

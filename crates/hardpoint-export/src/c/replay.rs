@@ -30,6 +30,8 @@ pub fn replay(model: &Model, step: &DrivenStep, formulas: Option<&MeasureFormula
         values: Vec::new(),
         found: vec![0.0; usize::max(step.motion.outputs.len(), step.path.outputs.len())],
     };
+    replay.inputs.resize(step.position_inputs(), 0.0);
+    step.place_pieces(&mut replay.inputs);
     replay.inputs.extend(step.drivers.iter().flat_map(|d| [d.start, 0.0, 0.0]));
     // The nominal design.
     replay.inputs.extend(step.design.iter().map(|_| 0.0));
@@ -65,7 +67,7 @@ pub fn replay(model: &Model, step: &DrivenStep, formulas: Option<&MeasureFormula
 
 struct Replay<'a> {
     step: &'a DrivenStep,
-    /// Coordinates, then value, rate and acceleration of every driver.
+    /// Coordinates and pieces of the curves, then value, rate and acceleration of every driver.
     inputs: Vec<f64>,
     values: Vec<f64>,
     found: Vec<f64>,
@@ -75,20 +77,22 @@ impl Replay<'_> {
     /// Moves straight to this motion of the drivers; returns true if all checks pass there.
     fn reaches(&mut self, drivers: &[[f64; 3]]) -> bool {
         let Self { step, inputs, values, found } = self;
-        let n = step.coordinates.len();
-        for (at, to) in inputs[n..].chunks_exact_mut(3).zip(drivers) {
+        let (n, drivers_at) = (step.coordinates.len(), step.position_inputs());
+        for (at, to) in inputs[drivers_at..].chunks_exact_mut(3).zip(drivers) {
             (at[1], at[2]) = (to[0] - at[0], 0.0);
         }
         step.path.evaluate(inputs, &[], values, found);
         for k in 0..n {
             inputs[k] += found[2 * k] + 0.5 * found[2 * k + 1];
         }
-        for (at, to) in inputs[n..].chunks_exact_mut(3).zip(drivers) {
+        step.place_pieces(inputs);
+        for (at, to) in inputs[drivers_at..].chunks_exact_mut(3).zip(drivers) {
             at.copy_from_slice(to);
         }
         for _ in 0..MOST_CORRECTIONS {
             step.correction.evaluate(inputs, &[], values, found);
             inputs[..n].copy_from_slice(&found[..n]);
+            step.place_pieces(inputs);
             if found[n] <= QUADRATIC {
                 break;
             }

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::expression::{Range, Stretch};
+use crate::linalg::Segment;
 use crate::number::{Interval, Jet, Real};
 
 use super::jumps::Break;
@@ -35,6 +36,11 @@ pub(super) trait LawKind: fmt::Display {
     /// Bounds of f and of its first three rates over an interval of time, with outward rounding. A rate is unbounded if
     /// one of a lower order jumps anywhere inside it, and all are if f is undefined.
     fn enclosure(&self, over: Interval) -> Jet<Interval, 4>;
+
+    /// Polynomial pieces of a spline; empty for other laws.
+    fn segments(&self) -> &[Segment] {
+        &[]
+    }
 
     /// Appends the breaks between `from` and `to` at which the value or the first two derivatives may jump.
     fn find_breaks(&self, _from: f64, _to: f64, _breaks: &mut Vec<Break>) {}
@@ -85,6 +91,10 @@ macro_rules! kinds {
 
             fn enclosure(&self, over: Interval) -> Jet<Interval, 4> {
                 match self { $(Self::$kind(law) => law.enclosure(over)),* }
+            }
+
+            fn segments(&self) -> &[Segment] {
+                match self { $(Self::$kind(law) => law.segments()),* }
             }
 
             fn find_breaks(&self, from: f64, to: f64, breaks: &mut Vec<Break>) {

@@ -94,8 +94,13 @@ pub(super) fn sum_of_powers<T: Real, const N: usize>(
     terms: usize,
     coefficient: impl Fn(usize) -> T,
 ) -> Jet<T, N> {
+    of.compose(polynomial(of.value(), terms, coefficient))
+}
+
+/// c0 + c1 x + c2 x² + ... with this number of terms, and its first three derivatives.
+#[inline(always)]
+pub(crate) fn polynomial<T: Real>(x: T, terms: usize, coefficient: impl Fn(usize) -> T) -> [T; 4] {
     // f <- f x + c, differentiated with respect to x: d <- d x + f, dd <- dd x + 2 d, ddd <- ddd x + 3 dd
-    let x = of.value();
     let [mut f, mut d, mut dd, mut ddd] = [T::zero(); 4];
     for k in (0..terms).rev() {
         ddd = ddd * x + dd * 3.0;
@@ -103,7 +108,7 @@ pub(super) fn sum_of_powers<T: Real, const N: usize>(
         d = d * x + f;
         f = f * x + coefficient(k);
     }
-    of.compose([f, d, dd, ddd])
+    [f, d, dd, ddd]
 }
 
 /// Writes the law as an expression.

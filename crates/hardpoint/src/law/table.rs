@@ -332,6 +332,10 @@ impl LawKind for Spline {
         }
     }
 
+    fn segments(&self) -> &[Segment] {
+        &self.segments
+    }
+
     fn parameters(&self) -> Vec<Parameter> {
         let rates: &[&str] = match self.degree {
             SplineDegree::Cubic => &["start_speed", "end_speed"],

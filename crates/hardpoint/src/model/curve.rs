@@ -1,6 +1,6 @@
 //! The curve that a point follows: a smooth line in the x-y plane of a marker.
 
-use crate::law::{Law, LawError, SplineDegree, SplineEnds, Table};
+use crate::law::{Law, LawError, SplineDegree, SplineEnds, Table, polynomial};
 use crate::number;
 use crate::space::{Mat3, Pose, Real, Vec3};
 
@@ -18,12 +18,21 @@ const TRIED: usize = 8;
 const SAMPLES: f64 = 16.0;
 const MOST_SAMPLES: f64 = 1024.0;
 
+/// Length of a [`CurvePiece`].
+pub const CURVE_PIECE: usize = 13;
+
+/// Polynomial piece of a curve: the parameter at which it begins, then the coefficients of x, and of y, by powers of
+/// the parameter from there.
+pub type CurvePiece<T = f64> = [T; CURVE_PIECE];
+
 /// A planar curve through points, in the frame of the marker that carries it: the quintic spline over the length of the
 /// chords between the points, so that the acceleration of what follows it changes without kinks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
     x: Law,
     y: Law,
+    /// Parameters of the points, m.
+    knots: Vec<f64>,
     /// Length of the chords, m: the parameter u runs from 0 to it.
     length: f64,
     points: usize,
@@ -54,12 +63,28 @@ impl<T: Real> Contact<T> {
         Self::at(curve, u)
     }
 
+    /// The place u of a piece.
+    pub fn on_piece(piece: &CurvePiece<T>, u: T) -> Self {
+        let [x, y] = number::both([1, 7], |first| polynomial(u - piece[0], 6, |power| piece[first + power]));
+        Self { u, c: std::array::from_fn(|k| Vec3::new(x[k], y[k], T::zero())) }
+    }
+
+    /// The place of a piece after one step of Newton's method to the foot of the perpendicular from p.
+    pub fn corrected(&self, piece: &CurvePiece<T>, p: Vec3<T>) -> Self {
+        Self::on_piece(piece, self.u + self.step(p))
+    }
+
+    /// Step of Newton's method to the foot of the perpendicular from p: (p - C) . C' / (C'^2 - (p - C) . C'').
+    fn step(&self, p: Vec3<T>) -> T {
+        let [c, d, dd, _] = self.c;
+        let e = p - c;
+        e.dot(d) / (d.dot(d) - e.dot(dd))
+    }
+
     /// The place next to p, which moves with p to first order: u' = p' . C' / (C'^2 - (p - C) . C'').
     pub fn follow(curve: &Curve, p: Vec3<T>, near: T) -> Self {
         let mut contact = Self::nearest(curve, p, near);
-        let [c, d, dd, _] = contact.c;
-        let e = p - c;
-        let step = e.dot(d) / (d.dot(d) - e.dot(dd));
+        let step = contact.step(p);
         let slide = step - T::constant(step.value());
         if !slide.vanishes() {
             contact.u += slide;
@@ -136,7 +161,8 @@ impl Curve {
             Law::table(&Table { times: times.clone(), values, degree: SplineDegree::Quintic, ends })
         };
         let length = times[times.len() - 1];
-        let mut curve = Self { x: law(0)?, y: law(1)?, length, points: points.len(), closed, start: 0.0 };
+        let (x, y, points) = (law(0)?, law(1)?, points.len());
+        let mut curve = Self { x, y, knots: times, length, points, closed, start: 0.0 };
         curve.start = curve.search(follower);
         Ok(curve)
     }
@@ -155,6 +181,43 @@ impl Curve {
     /// Upper end of the curve parameter, m (the lower end is 0): the sum of the chord lengths.
     pub fn length(&self) -> f64 {
         self.length
+    }
+
+    /// Polynomial pieces between the points, in order.
+    pub fn pieces(&self) -> impl Iterator<Item = CurvePiece> + '_ {
+        (0..self.knots.len() - 1).map(|k| self.piece_between(k))
+    }
+
+    /// Polynomial piece between the points k and k + 1.
+    fn piece_between(&self, k: usize) -> CurvePiece {
+        let [x, y] = [&self.x, &self.y].map(|law| law.segments()[k]);
+        let mut numbers = [self.knots[k]; CURVE_PIECE];
+        numbers[1..7].copy_from_slice(&x);
+        numbers[7..].copy_from_slice(&y);
+        numbers
+    }
+
+    /// Polynomial piece at u, whole lengths away if the curve is closed; NaN beyond the ends of an open one.
+    pub fn piece(&self, u: f64) -> CurvePiece {
+        let turns = if self.closed { self.length * (u / self.length).floor() } else { 0.0 };
+        let slack = 1e-12 * self.length;
+        let within = u - turns;
+        // NaN is beyond the ends, too.
+        if !(within >= -slack && within <= self.length + slack) {
+            return [f64::NAN; CURVE_PIECE];
+        }
+        let last = self.knots.len() - 2;
+        let k = self.knots.partition_point(|knot| *knot <= within).saturating_sub(1).min(last);
+        let mut piece = self.piece_between(k);
+        piece[0] += turns;
+        piece
+    }
+
+    /// Length of the parameter over which the tangent turns by about a radian where the curve bends most, m; not more
+    /// than the whole length.
+    pub(crate) fn turning_length(&self) -> f64 {
+        let of = |ends: &[f64]| (ends[1] - ends[0]) / self.bend(ends[0], ends[1]);
+        self.knots.windows(2).map(of).fold(self.length, f64::min)
     }
 
     /// Length of the parameter over which the curve may bend anew, m: that between two of its points.

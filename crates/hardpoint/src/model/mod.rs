@@ -30,7 +30,7 @@ pub use case::{Case, Grid, LoadMode};
 pub use change::{Change, ChangeText, End};
 pub use coupler::{Coupler, CouplerTerm, Transmission};
 pub(crate) use curve::Contact;
-pub use curve::{Curve, CurvePoint};
+pub use curve::{CURVE_PIECE, Curve, CurvePiece, CurvePoint};
 pub use element::{
     Angle, Axes, CoupledStiffness, Coupling, CubicStiffness, CubicTorsionalStiffness, Damping, Density,
     ENDS_MEET, Element, ElementId, ElementKind, ElementNumber, ElementUnit, Force, Inertia, Length, Mass,

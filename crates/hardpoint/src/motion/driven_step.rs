@@ -5,15 +5,20 @@
 //! requested, the design variables. There is no time, no law and no prediction in them, so the caller chooses the path
 //! of the drivers.
 //!
+//! The angles that couplers count through whole turns, and the parameters of the contacts with curves, are unknowns
+//! like the coordinates. The turn of an angle is the nearest one to the predicted angle. A parameter is corrected on the
+//! piece of its curve on which it is predicted: the numbers of the piece are inputs, too.
+//!
 //! [`step_program`]: super::step_program
 
 use hardpoint_tape::{Number, Options, Program, record};
 
 use crate::design::DesignMap;
 use crate::linalg::Factors;
-use crate::model::{Driver, VariableId};
+use crate::model::{CURVE_PIECE, Contact, Curve, Driver, VariableId};
 use crate::number::{self, record as recording};
 use crate::space::Vec3;
+use crate::topology::{ClosureId, RowId, Topology};
 
 use super::BodyState;
 use super::kinematics::State;
@@ -24,14 +29,18 @@ use super::step_program::{OFFSET, RecordedStep, largest_of};
 
 /// Step of a mechanism as straight-line programs of its drivers, and of its design if that was requested.
 ///
-/// All numbers are in SI units. The three programs have the same inputs: the unknown coordinates, then value, rate and
-/// acceleration of every driver, then the values of [`design`](Self::design). A step corrects the coordinates by
+/// All numbers are in SI units. The three programs have the same inputs: the unknown coordinates, the piece of every
+/// curve at its contact, then value, rate and acceleration of every driver, then the values of
+/// [`design`](Self::design). A step corrects the coordinates by
 /// [`correction`](Self::correction) until the size of a correction is at most 1e-8, so that the remaining error is its
 /// square, and evaluates [`motion`](Self::motion) there.
 #[derive(Clone, Debug)]
 pub struct DrivenStep {
-    /// Unknown coordinates; those of a ball are the four components of a unit quaternion.
+    /// Unknown coordinates; those of a ball are the four components of a unit quaternion. Then the angles that couplers
+    /// count through whole turns, and the parameters of the contacts with curves.
     pub coordinates: Vec<DrivenCoordinate>,
+    /// Curves that points follow.
+    pub curves: Vec<DrivenCurve>,
     /// Value of every driver at the start, m or rad.
     pub drivers: Vec<DrivenCoordinate>,
     /// Design variables that are inputs, in the order of the model: all of them, or none if the design is nominal.
@@ -55,8 +64,18 @@ pub struct DrivenStep {
 pub struct DrivenCoordinate {
     /// Value, m or rad; a component of a quaternion.
     pub start: f64,
-    /// Unit in which moves are compared: 1 rad, the size of the loop, or 1/2 for a component of a quaternion.
+    /// Unit in which moves are compared: 1 rad, the size of the loop, 1/2 for a component of a quaternion, or the
+    /// length over which a curve turns by about a radian.
     pub unit: f64,
+}
+
+/// Curve of a step, which a point follows.
+#[derive(Clone, Debug)]
+pub struct DrivenCurve {
+    /// Index of its parameter in the coordinates.
+    pub coordinate: usize,
+    /// The curve.
+    pub curve: Curve,
 }
 
 /// Design variable of a step, in its unit; the nominal design is at 0.
@@ -86,7 +105,86 @@ impl MotionCheck {
     pub const ALL: [Self; 5] = [Self::Limit, Self::Branch, Self::Growth, Self::Pivots, Self::Residual];
 }
 
+/// Unknown of a step.
+#[derive(Clone, Copy)]
+enum Unknown {
+    Channel(Channel),
+    /// Angle that a coupler counts through whole turns, by the row of its term.
+    Angle(RowId),
+    /// Parameter of the contact with a curve.
+    Contact(ClosureId, usize),
+}
+
+impl Unknown {
+    /// All of a plan, in the order of the inputs.
+    fn all(topology: &Topology) -> Vec<Self> {
+        let channels = Channel::all(topology).into_iter().map(Self::Channel);
+        let terms = topology.coupler_terms.iter().filter(|r| !topology.constraint(**r).is_length());
+        let contacts = topology.contacts().map(|(c, k)| Self::Contact(c, k));
+        channels.chain(terms.map(|r| Self::Angle(*r))).chain(contacts).collect()
+    }
+
+    /// Value, first and second derivative in a solved state.
+    fn of(self, topology: &Topology, state: &State<Number>) -> [Number; ORDERS] {
+        match self {
+            Self::Channel(channel) => channel.of(state),
+            Self::Angle(r) => state.coordinate_of_row(topology, r),
+            Self::Contact(c, k) => {
+                let [rate, second] = state.sliding(topology, c, k);
+                [state.contacts[k].u, rate, second]
+            }
+        }
+    }
+
+    /// The unknown at the accepted position.
+    fn start(self, one: &Mechanism<'_>) -> DrivenCoordinate {
+        let saved = &one.saved;
+        let (start, unit) = match self {
+            Self::Channel(channel) => {
+                let unit = match channel {
+                    Channel::Coordinate(c) => one.topology[c].unit,
+                    Channel::Ball(..) => 0.5,
+                };
+                (channel.saved(&saved.q, &saved.balls), unit)
+            }
+            Self::Angle(r) => (saved.coupled[r.0][0], 1.0),
+            Self::Contact(_, k) => (saved.contacts[k].u, one.parts.curves[k].turning_length()),
+        };
+        DrivenCoordinate { start, unit }
+    }
+
+    /// Size of a correction from an input, for the unknowns that are not corrected with the coordinates.
+    fn corrected(
+        self,
+        topology: &Topology,
+        state: &State<Number>,
+        [from, unit]: [Number; 2],
+    ) -> Option<Number> {
+        match self {
+            Self::Channel(_) => None,
+            Self::Angle(_) | Self::Contact(..) => {
+                let [now, ..] = self.of(topology, state);
+                Some(((now - from) / unit).abs())
+            }
+        }
+    }
+}
+
 impl DrivenStep {
+    /// Writes the pieces of the curves at the contacts behind the coordinates, as the programs read them.
+    pub fn place_pieces(&self, inputs: &mut [f64]) {
+        let first = self.coordinates.len();
+        for (k, DrivenCurve { coordinate, curve }) in self.curves.iter().enumerate() {
+            let piece = curve.piece(inputs[*coordinate]);
+            inputs[first + k * CURVE_PIECE..][..CURVE_PIECE].copy_from_slice(&piece);
+        }
+    }
+
+    /// Number of inputs before those of the drivers: the coordinates, and the pieces of the curves.
+    pub fn position_inputs(&self) -> usize {
+        self.coordinates.len() + self.curves.len() * CURVE_PIECE
+    }
+
     /// Records the step at the accepted position, of the nominal design or of any; `besides` records the measures that
     /// need more than the motion, with further limits. `None` if the step is not arithmetic.
     pub(crate) fn record(
@@ -96,20 +194,23 @@ impl DrivenStep {
         besides: impl FnOnce(&mut RecordedStep<'_>) -> Option<(Vec<Number>, Vec<Number>)>,
     ) -> Option<Self> {
         let (model, topology) = (one.model, &one.topology);
-        let channels = Channel::all(topology);
+        let unknowns = Unknown::all(topology);
         let design = (design_map, any_design);
         // An offset below 1e-8 is corrected once; without an offset nothing is corrected.
-        let correction = recorded(one, design, OFFSET[0], |step, _| {
+        let correction = recorded(one, design, OFFSET[0], |step, _, inputs| {
             let state = &*step.state;
-            let mut out: Vec<Number> = channels.iter().map(|c| c.of(state)[0]).collect();
-            out.push(largest_of(state.corrections.iter().map(|(corrections, _)| corrections[0])));
+            let mut out: Vec<Number> = unknowns.iter().map(|u| u.of(topology, state)[0]).collect();
+            let of_coordinates = state.corrections.iter().map(|(corrections, _)| corrections[0]);
+            let others = unknowns.iter().zip(inputs);
+            let others = others.filter_map(|(unknown, from)| unknown.corrected(topology, state, *from));
+            out.push(largest_of(of_coordinates.chain(others)));
             Some(out)
         })?;
-        let path = recorded(one, design, 0.0, |step, _| {
-            let rates = channels.iter().flat_map(|c| c.of(step.state).into_iter().skip(1));
+        let path = recorded(one, design, 0.0, |step, _, _| {
+            let rates = unknowns.iter().flat_map(|u| u.of(topology, step.state).into_iter().skip(1));
             Some(rates.collect())
         })?;
-        let motion = recorded(one, design, 0.0, |step, parts| {
+        let motion = recorded(one, design, 0.0, |step, parts, _| {
             let bodies = BodyState::all(step.state);
             let state = &*step.state;
             let watched = || state.watched.iter();
@@ -126,13 +227,9 @@ impl DrivenStep {
             let limit = largest_of(limits.into_iter().chain(recording::limits()));
             Some([vec![limit, branch, growth, pivots, residual], determinants, measures, bodies].concat())
         })?;
-        let coordinates = channels.iter().map(|channel| DrivenCoordinate {
-            start: channel.saved(&one.saved.q, &one.saved.balls),
-            unit: match *channel {
-                Channel::Coordinate(c) => topology[c].unit,
-                Channel::Ball(..) => 0.5,
-            },
-        });
+        let coordinates = unknowns.iter().map(|unknown| unknown.start(one));
+        let first_contact = unknowns.len() - one.parts.curves.len();
+        let curves = one.parts.curves.iter().enumerate();
         // Zero has one sign.
         let values = model.drivers.iter().zip(&one.saved.drivers).map(|(d, f)| d.with_sense(f[0]) + 0.0);
         let drivers = values.zip(driver_units(model, topology));
@@ -143,6 +240,9 @@ impl DrivenStep {
         Some(Self {
             design: (0..values.len()).map(variable).collect(),
             coordinates: coordinates.collect(),
+            curves: curves
+                .map(|(k, curve)| DrivenCurve { coordinate: first_contact + k, curve: curve.clone() })
+                .collect(),
             drivers: drivers.map(|(start, unit)| DrivenCoordinate { start, unit }).collect(),
             correction,
             path,
@@ -154,27 +254,45 @@ impl DrivenStep {
 }
 
 /// Records a step of the nominal design, or of any, from a position at `offset` from the accepted one, and returns the
-/// program of these outputs.
+/// program of these outputs; `outputs` also takes every unknown where the step begins, with its unit.
 fn recorded(
     one: &Mechanism<'_>,
     (design_map, any_design): (&DesignMap<'_>, bool),
     offset: f64,
-    outputs: impl FnOnce(&mut RecordedStep<'_>, &PlanGeometry<Number>) -> Option<Vec<Number>>,
+    outputs: impl FnOnce(&mut RecordedStep<'_>, &PlanGeometry<Number>, &[[Number; 2]]) -> Option<Vec<Number>>,
 ) -> Option<Program> {
     let (model, topology) = (one.model, &one.topology);
     let mut fits = false;
     recording::begin();
     let recorded = record(|| {
         let mut state = State::new(model, topology);
-        for channel in Channel::all(topology) {
-            let beside = match channel {
-                Channel::Coordinate(c) => one.saved.q[c.0] + offset * topology[c].unit,
-                Channel::Ball(c, k) => {
+        let (mut inputs, mut contacts) = (Vec::new(), Vec::new());
+        for unknown in Unknown::all(topology) {
+            let DrivenCoordinate { start, unit } = unknown.start(one);
+            let beside = match unknown {
+                Unknown::Channel(Channel::Ball(c, k)) => {
                     one.saved.balls[c.0].nudged(Vec3::new(offset, offset, offset)).component(k)
                 }
+                Unknown::Channel(Channel::Coordinate(_)) => start + offset * unit,
+                Unknown::Angle(_) | Unknown::Contact(..) => start,
             };
-            channel.put(Number::input(beside), &mut state);
+            let input = Number::input(beside);
+            inputs.push([input, Number::constant(unit)]);
+            match unknown {
+                Unknown::Channel(channel) => channel.put(input, &mut state),
+                Unknown::Angle(r) => state.near[r.0] = input,
+                Unknown::Contact(..) => contacts.push((start, input)),
+            }
         }
+        state.pieces = one
+            .parts
+            .curves
+            .iter()
+            .zip(&contacts)
+            .map(|(curve, (start, _))| curve.piece(*start).map(Number::input))
+            .collect();
+        state.contacts =
+            state.pieces.iter().zip(&contacts).map(|(piece, (_, u))| Contact::on_piece(piece, *u)).collect();
         // Inputs are the drivers' values, the kernel drives coordinates.
         let coordinate = |(driver, saved): (&Driver, &[f64; ORDERS])| {
             number::each(saved, |x| driver.with_sense(Number::input(driver.with_sense(x))))
@@ -190,7 +308,7 @@ fn recorded(
         }
         let mut step =
             RecordedStep { topology, state: &mut state, values: &values, drivers: &drivers, laws: &[] };
-        let outputs = outputs(&mut step, &parts);
+        let outputs = outputs(&mut step, &parts, &inputs);
         fits = outputs.is_some();
         outputs.unwrap_or_default()
     });

@@ -18,7 +18,7 @@
 use crate::constraint::{MarkerPair, MarkerPairRates};
 use crate::joint::Freedom;
 use crate::linalg::{Factors, LARGEST_DENSE, Watched};
-use crate::model::{Contact, DriverId, GROUND, Model};
+use crate::model::{Contact, CurvePiece, DriverId, GROUND, Model};
 use crate::number::array;
 use crate::space::{Pose, Quat, Real, Twist, Vec3, Wrench};
 use crate::topology::{Block, BlockId, Closure, ClosureColumn, ClosureId, LinkId, RowId, RowTerm, Topology};
@@ -79,6 +79,9 @@ pub(crate) struct State<T> {
     /// Per curve: contact of its follower.
     /// u, and C with its derivatives by u.
     pub contacts: Vec<Contact<T>>,
+    /// Per curve: its piece at the contact, if the parameter is an unknown that is corrected with the coordinates: a
+    /// recording cannot search for the contact. Empty otherwise.
+    pub pieces: Vec<CurvePiece<T>>,
     /// Per block: smallest over largest pivot, and the sign of the determinant.
     pub pivots: Vec<(f64, bool)>,
     /// Per block: its determinant, to be compared by [`Factors::ratio`].
@@ -153,6 +156,7 @@ impl<T: Real> State<T> {
             gap: vec![o; rows],
             gap_left: [0.0; 2],
             contacts: Vec::new(),
+            pieces: Vec::new(),
             pivots: vec![(1.0, true); topology.blocks.len()],
             determinants: vec![o; topology.blocks.len()],
             watched: vec![Watched::zero(); topology.blocks.len()],
@@ -256,7 +260,10 @@ impl<T: Real> State<T> {
         // p = P_j in axes of marker i; u is the foot of the perpendicular on the curve, (p - C(u)) . C'(u) = 0. Marker
         // i moves there, with x along C'.
         let p = i.inverse().point(j.r);
-        self.contacts[k] = Contact::follow(&parts.curves[k], p, self.contacts[k].u);
+        self.contacts[k] = match self.pieces.get(k) {
+            Some(piece) => self.contacts[k].corrected(piece, p),
+            None => Contact::follow(&parts.curves[k], p, self.contacts[k].u),
+        };
         self.ends[c.0].i = i.compose(self.contacts[k].frame());
     }
 

@@ -39,7 +39,7 @@ pub(crate) mod tube;
 pub(crate) mod turns;
 mod walk;
 
-pub use driven_step::{DrivenCoordinate, DrivenStep, DrivenVariable, MotionCheck};
+pub use driven_step::{DrivenCoordinate, DrivenCurve, DrivenStep, DrivenVariable, MotionCheck};
 pub use driver_box::BoxFailure;
 pub use execution::{Execution, StepMethod};
 pub use gap::{Assembly, AssemblyShift, Closing, Gap};

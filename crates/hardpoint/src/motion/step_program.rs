@@ -7,7 +7,8 @@
 //! numbers that the tape evaluates ([`Tape::solve`](super::tape::Tape::solve)). If a decision differs, the results are
 //! discarded, and the kernel solves the step.
 //!
-//! Not recorded are mechanisms with curves; mechanisms with couplers, which count turns; mechanisms so large that
+//! Not recorded are mechanisms with curves, and those with couplers, which count turns (of both a step of drivers is
+//! recorded: [`super::driven_step`]); mechanisms so large that
 //! a program would cost more than it saves; and margins of sparse blocks.
 
 use std::sync::{Arc, OnceLock};
@@ -222,13 +223,16 @@ impl StepProgram {
             Some("a point follows a curve")
         } else if margins && topology.blocks.iter().any(|b| b.unknowns.len() > LARGEST_DENSE) {
             Some("a block is so large that its margin takes longer than its motion")
-        } else if topology.links.len() > MOST_LINKS
-            || topology.blocks.iter().map(|b| b.multiplications).sum::<usize>() > MOST_MULTIPLICATIONS
-        {
-            Some("the program would be too long")
         } else {
-            None
+            Self::excess(topology)
         }
+    }
+
+    /// Reason why the programs of a plan would be too long; `None` if they are not.
+    pub fn excess(topology: &Topology) -> Option<&'static str> {
+        let multiplications = topology.blocks.iter().map(|b| b.multiplications).sum::<usize>();
+        (topology.links.len() > MOST_LINKS || multiplications > MOST_MULTIPLICATIONS)
+            .then_some("the program would be too long")
     }
 
     /// Records the step at the position of `one`, of the nominal design, and the results of `besides`; returns `None`

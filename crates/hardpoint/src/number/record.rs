@@ -8,7 +8,7 @@ use super::Function;
 use super::real::{LARGEST_ANGLE, Real};
 
 thread_local! {
-    /// True if the value of a recorded number was read on this thread.
+    /// True if a value that depends on inputs was read on this thread.
     static LOOKED_AT: Cell<bool> = const { Cell::new(false) };
     static STRICT: Cell<bool> = const { Cell::new(false) };
     static LIMITS: RefCell<Vec<Number>> = const { RefCell::new(Vec::new()) };
@@ -35,8 +35,8 @@ pub(crate) fn limits() -> Vec<Number> {
     LIMITS.take()
 }
 
-/// True if everything since [`begin`] is arithmetic: no value was read, since a program would treat everything computed
-/// from it as constant.
+/// True if everything since [`begin`] is arithmetic: no value that depends on inputs was read, since a program would
+/// treat everything computed from it as constant.
 pub(crate) fn is_arithmetic() -> bool {
     !LOOKED_AT.get()
 }
@@ -51,7 +51,10 @@ impl Real for Number {
         Number::constant(x)
     }
     fn value(self) -> f64 {
-        LOOKED_AT.set(true);
+        // A constant has the same value in every run.
+        if self.known().is_none() {
+            LOOKED_AT.set(true);
+        }
         Number::value(self)
     }
     fn decisive(self) -> f64 {
