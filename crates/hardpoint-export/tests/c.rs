@@ -467,6 +467,58 @@ fn a_changed_design_in_c_is_that_of_the_engine() {
     assert!(compared > 1000, "{compared} derivatives");
 }
 
+/// A closed cam whose roller has a given distance from the curve, moved by its hardpoints.
+const ROLLER: &str = r#"
+name = "roller"
+units = { length = "mm", angle = "deg" }
+hardpoints = { shaft = [0, 0, 0], roller = [2, 42, 10], guide = [0, 80, 0] }
+bodies = { cam = {}, slide = {} }
+drivers.motor = { joint = "shaft", law = "800*t" }
+design.shaft_x = { move = "shaft", along = "x" }
+measures.lift = { type = "coordinate", joint = "guide" }
+time = { end = 1, steps = 400 }
+[joints]
+shaft = { type = "revolute", bodies = ["ground", "cam"], at = "shaft", axis = "z" }
+guide = { type = "translational", bodies = ["ground", "slide"], at = "guide", axis = "y" }
+[joints.follower]
+type = "point_on_curve"
+bodies = ["cam", "slide"]
+at = ["shaft", "roller"]
+axis = "z"
+length = 12
+curve = { closed = true, points = [
+    [0, 30, 0], [-21, 21, 0], [-28, 0, 0], [-22, -20, 0], [0, -26, 0], [23, -22, 0], [28, 0, 0], [21, 20, 0]
+] }
+"#;
+
+#[test]
+fn a_cam_with_a_given_distance_has_its_hardpoints_as_arguments() {
+    let file = hardpoint_file::parse(ROLLER, "roller.toml").unwrap_or_else(|e| panic!("{e}"));
+    let options = ExportOptions { design: true };
+    let c = Compiled::of(&file, "roller", "-O0", options, include_str!("design.c")).unwrap();
+    let analysis = Analysis::new(&file.model).unwrap();
+    let change = [2e-3];
+    let solution = analysis.solve(Run::new().at(&change));
+    let steps = drivers(&analysis, &solution);
+    assert_eq!(steps.len(), 401);
+    let answer = c.answer(change.into_iter().chain(steps.iter().flatten().flatten().copied()));
+    let mut lines = answer.lines();
+    assert_eq!(lines.next(), Some("0"), "the design is not reached");
+    let rows: Vec<Vec<f64>> = lines.map(|l| l.split(' ').map(|x| x.parse().unwrap()).collect()).collect();
+    assert!(rows.len() == steps.len() && rows.iter().all(|row| row[0] == 0.0));
+    let column = solution.measured.index("lift").unwrap();
+    for order in 0..3 {
+        let of = |first: usize| rows.iter().map(|row| row[first + order]).collect::<Vec<f64>>();
+        let values: Vec<f64> = (0..rows.len()).map(|k| solution.measured.value(k, column)[order]).collect();
+        let by: Vec<f64> =
+            (0..rows.len()).map(|k| solution.measured.d(k, VariableId(0), column)[order]).collect();
+        let apart = difference(&of(1), &values);
+        assert!(apart < CHANGED, "order {order} by {apart:e}");
+        let apart = difference(&of(4), &by);
+        assert!(apart < DERIVATIVE, "derivative, order {order} by {apart:e}");
+    }
+}
+
 /// The examples of `docs/export-c.md`, as one file.
 #[test]
 fn the_examples_of_the_page_compile() {

@@ -220,6 +220,19 @@ pub fn literal(x: f64) -> String {
     if x < 0.0 { format!("(-{magnitude})") } else { magnitude }
 }
 
+/// Lvalue of number k of a body.
+pub fn body_number(of: &str, body: usize, k: usize) -> String {
+    let at = match k {
+        0..3 => format!("r[{k}]"),
+        3..12 => format!("axis[{}][{}]", (k - 3) / 3, k % 3),
+        12..15 => format!("v[{}]", k % 3),
+        15..18 => format!("omega[{}]", k % 3),
+        18..21 => format!("a[{}]", k % 3),
+        _ => format!("alpha[{}]", k % 3),
+    };
+    format!("{of}->body[{}].{at}", body - 1)
+}
+
 /// Places of values in working memory; those of values that are no longer read are used again.
 struct Slots {
     of: Vec<Option<usize>>,

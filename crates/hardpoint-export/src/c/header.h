@@ -79,7 +79,7 @@ typedef struct @name@_output {
 
 /* A position, from which the next step starts. */
 typedef struct @name@_position {
-    double x[@coordinates_or_one@]; /* @coordinates_are@ */
+    double x[@coordinates_or_one@]; /* unknown coordinates, and the pieces of curves at them */
     double q[@NAME@_DRIVERS];
 @position_design@    double determinant[@blocks_or_one@], determinant_before[@blocks_or_one@];
     double angle[@counted_or_one@], turn[@counted_or_one@]; /* measures that count whole turns */

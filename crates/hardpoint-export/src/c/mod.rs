@@ -3,6 +3,7 @@
 //! The formulas are the straight-line programs that the engine records of its own kernel; the iteration around them is
 //! `control.c`. Templates have places as in `@name@`.
 
+mod curves;
 mod emit;
 mod replay;
 
@@ -11,8 +12,8 @@ use std::fmt::Write;
 use std::path::Path;
 
 use hardpoint::measure::{MeasureFormulas, Output, outputs};
-use hardpoint::model::{CURVE_PIECE, Model, OutputSource};
-use hardpoint::motion::{DrivenCurve, DrivenStep, MotionCheck};
+use hardpoint::model::{Model, OutputSource};
+use hardpoint::motion::{DrivenStep, MotionCheck};
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::{Analysis, Run};
 use hardpoint_file::ModelFile;
@@ -22,8 +23,8 @@ use hardpoint_table::Units;
 use hardpoint_tape::{Operand, Program};
 
 use crate::{Companion, ExportError, ExportOptions, ExportedModel, Format, Writer};
-use emit::{Function, literal};
-use replay::{ReplayResult, replay};
+use emit::{Function, body_number, literal};
+use replay::{ReplayResult, replay, start_inputs};
 
 /// C format.
 pub const FORMAT: Format = Format {
@@ -40,7 +41,6 @@ const JACOBIAN_DECLARED: &str = include_str!("jacobian.h");
 const SOURCE: &str = include_str!("source.c");
 const LARGER: &str = include_str!("larger.c");
 const MEASURES: &str = include_str!("measures.c");
-const PIECES: &str = include_str!("pieces.c");
 const CONTROL: &str = include_str!("control.c");
 const JACOBIAN: &str = include_str!("jacobian.c");
 // If requested: derivatives, and the design.
@@ -587,7 +587,7 @@ impl Source<'_> {
         );
     }
 
-    /// True for inputs of a step that programs are differentiated by: coordinates, drivers, and arguments of the design.
+    /// True for inputs that programs are differentiated by: coordinates, drivers, and arguments of the design.
     fn is_argument(&self, design_at: usize, k: usize) -> bool {
         let is_piece = (self.step.coordinates.len()..self.step.position_inputs()).contains(&k);
         k < design_at && !is_piece || k >= design_at && self.design.contains(&(k - design_at))
@@ -729,11 +729,9 @@ impl Source<'_> {
         }
         let width = usize::max(2 * step.coordinates.len(), step.coordinates.len() + 1);
         let when = |text: &str| if self.has_design() { self.filled(text, &[]) } else { String::new() };
-        let when_curved =
-            |text: &str| if step.curves.is_empty() { String::new() } else { self.filled(text, &[]) };
         vec![
-            ("pieces", self.pieces()),
-            ("pieces_of_position", when_curved("        @name@_place_pieces(p->x);\n")),
+            ("pieces", self.filled(&curves::pieces(step), &[])),
+            ("pieces_of_position", self.filled(&curves::place_pieces(step, "        ", "p->x"), &[])),
             ("prepare", when(&PREPARE.replace("@calls@", prepare))),
             ("part_of_design", when(PART_OF_DESIGN)),
             ("restore_design", when(RESTORE_DESIGN)),
@@ -746,31 +744,6 @@ impl Source<'_> {
             ("measures", results.trim_end().to_owned()),
             ("start", self.start()),
         ]
-    }
-
-    /// The pieces of the curves, and the function that looks them up; empty without curves.
-    fn pieces(&self) -> String {
-        let (step, name) = (self.step, &self.name);
-        if step.curves.is_empty() {
-            return String::new();
-        }
-        let (mut tables, mut calls) = (String::new(), String::new());
-        for (k, DrivenCurve { coordinate, curve }) in step.curves.iter().enumerate() {
-            let _ = writeln!(tables, "static const double {name}_curve_{k}[][{CURVE_PIECE}] = {{");
-            for piece in curve.pieces() {
-                let _ = writeln!(tables, "    {{{}}},", piece.map(literal).join(", "));
-            }
-            let _ = writeln!(tables, "}};\n");
-            let _ = writeln!(
-                calls,
-                "    {name}_piece({name}_curve_{k}, {}, {}, {}, x[{coordinate}], x + {});",
-                curve.pieces().count(),
-                literal(curve.length()),
-                u8::from(curve.is_closed()),
-                step.coordinates.len() + k * CURVE_PIECE
-            );
-        }
-        tables + &self.filled(PIECES, &[("piece", CURVE_PIECE.to_string()), ("calls", calls)])
     }
 
     /// The function that evaluates the formulas, marks those that are undefined, and counts whole turns.
@@ -798,11 +771,7 @@ impl Source<'_> {
         step.coordinates.iter().enumerate().for_each(|(k, c)| set("x", k, c.start));
         step.drivers.iter().enumerate().for_each(|(k, c)| set("q", k, c.start));
         (0..self.design.len()).for_each(|k| set("design", k, 0.0));
-        let drivers = step.drivers.iter().flat_map(|d| [d.start, 0.0, 0.0]);
-        let mut inputs: Vec<f64> = step.coordinates.iter().map(|c| c.start).collect();
-        inputs.resize(step.position_inputs(), 0.0);
-        step.place_pieces(&mut inputs);
-        inputs.extend(drivers.chain(step.design.iter().map(|_| 0.0)));
+        let inputs = start_inputs(step);
         let mut found = vec![0.0; step.motion.outputs.len()];
         step.motion.evaluate(&inputs, &[], &mut Vec::new(), &mut found);
         for b in 0..step.logarithmic.len() {
@@ -814,9 +783,7 @@ impl Source<'_> {
             set("angle", k, *angle);
             set("turn", k, 0.0);
         }
-        if !step.curves.is_empty() {
-            let _ = writeln!(text, "    {}_place_pieces(s->position.x);", self.name);
-        }
+        text += &self.filled(&curves::place_pieces(step, "    ", "s->position.x"), &[]);
         if self.has_design() {
             let _ = writeln!(text, "    {}_prepare(s->position.design, s->work, s->geometry);", self.name);
         }
@@ -835,10 +802,6 @@ impl Source<'_> {
         let jacobian = self.filled(JACOBIAN_DECLARED, &[]);
         let field = format!("    {}_measure_value measure[{upper}_MEASURES];\n", self.name);
         let when = |text: String| if self.has_measures() { text } else { String::new() };
-        let coordinates_are = match step.curves.is_empty() {
-            true => "unknown coordinates",
-            false => "unknown coordinates, then the pieces of the curves at the contacts",
-        };
         let mut places = vec![
             ("drivers", step.drivers.len().to_string()),
             ("bodies", (model.bodies.len() - 1).to_string()),
@@ -846,7 +809,6 @@ impl Source<'_> {
             ("coordinates", step.coordinates.len().to_string()),
             ("blocks", step.logarithmic.len().to_string()),
             ("coordinates_or_one", step.position_inputs().max(1).to_string()),
-            ("coordinates_are", coordinates_are.to_owned()),
             ("blocks_or_one", step.logarithmic.len().max(1).to_string()),
             ("counted_or_one", self.measures.counted.len().max(1).to_string()),
             ("work", sizes.work.max(1).to_string()),
@@ -1001,19 +963,6 @@ impl Source<'_> {
         }
         text.replace("@name@", &self.name).replace("@NAME@", &self.name.to_ascii_uppercase())
     }
-}
-
-/// Lvalue of number k of a body.
-fn body_number(of: &str, body: usize, k: usize) -> String {
-    let at = match k {
-        0..3 => format!("r[{k}]"),
-        3..12 => format!("axis[{}][{}]", (k - 3) / 3, k % 3),
-        12..15 => format!("v[{}]", k % 3),
-        15..18 => format!("omega[{}]", k % 3),
-        18..21 => format!("a[{}]", k % 3),
-        _ => format!("alpha[{}]", k % 3),
-    };
-    format!("{of}->body[{}].{at}", body - 1)
 }
 
 /// A list that is not empty: C has no arrays without elements.

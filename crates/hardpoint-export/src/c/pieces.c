@@ -1,5 +1,5 @@
-/* Copies the piece of a curve at u: where it begins, then the coefficients of x, and of y, by powers of the parameter from
- * there. It is NaN beyond the ends of an open curve; a closed one goes on. */
+/* Copies the piece of a curve at u: where it begins, then the coefficients of x, and of y, by powers of the parameter
+ * from there. It is NaN beyond the ends of an open curve; a closed one goes on. */
 static void @name@_piece(const double (*pieces)[@piece@], int count, double length, int closed, double u, double *to)
 {
     const double turns = closed ? length * floor(u / length) : 0.0, within = u - turns, slack = 1e-12 * length;

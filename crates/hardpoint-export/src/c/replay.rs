@@ -22,19 +22,24 @@ pub struct ReplayResult {
     pub residual: f64,
 }
 
+/// Inputs of the programs where the motion starts, at rest, with the nominal design.
+pub fn start_inputs(step: &DrivenStep) -> Vec<f64> {
+    let mut inputs: Vec<f64> = step.coordinates.iter().map(|c| c.start).collect();
+    inputs.resize(step.position_inputs(), 0.0);
+    step.place_pieces(&mut inputs);
+    inputs.extend(step.drivers.iter().flat_map(|d| [d.start, 0.0, 0.0]));
+    inputs.extend(step.design.iter().map(|_| 0.0));
+    inputs
+}
+
 /// Replays the motion of the model.
 pub fn replay(model: &Model, step: &DrivenStep, formulas: Option<&MeasureFormulas>) -> ReplayResult {
     let mut replay = Replay {
         step,
-        inputs: step.coordinates.iter().map(|c| c.start).collect(),
+        inputs: start_inputs(step),
         values: Vec::new(),
         found: vec![0.0; usize::max(step.motion.outputs.len(), step.path.outputs.len())],
     };
-    replay.inputs.resize(step.position_inputs(), 0.0);
-    step.place_pieces(&mut replay.inputs);
-    replay.inputs.extend(step.drivers.iter().flat_map(|d| [d.start, 0.0, 0.0]));
-    // The nominal design.
-    replay.inputs.extend(step.design.iter().map(|_| 0.0));
     let outputs = formulas.map_or(0, |f| f.program.outputs.len());
     let mut undefined = vec![Vec::new(); outputs / 4];
     let mut residual: f64 = 0.0;

@@ -502,9 +502,12 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
         let distance = given.unwrap_or_else(|| if keeps { d.norm() } else { zero });
         let contact = joint.curve.as_ref().map_or(zero, |curve| {
             // The side of the curve on which the point is remains the same; a given distance has no sign.
-            let drawn = curve.distance(m_i.rot.transpose_mul(d));
-            let sign = || T::constant(f64::signum(drawn.value()));
-            given.map_or(drawn, |length| length.abs() * sign())
+            let side = || {
+                let [m_i, m_j] = [0, 1].map(|e| self.design_map.model().marker(JointId(j), e));
+                curve.distance(m_i.rot.transpose_mul(m_j.r - m_i.r)).signum()
+            };
+            let drawn = || curve.distance(m_i.rot.transpose_mul(d));
+            given.map_or_else(drawn, |length| length.abs() * T::constant(side()))
         });
         // Parallel axes have no angle about z_i; it would have no derivative.
         let has_course = joint.kind.coordinates.iter().any(|c| c.row == Row::Course);

@@ -93,7 +93,7 @@ macro_rules! kinds {
                 match self { $(Self::$kind(law) => law.enclosure(over)),* }
             }
 
-            fn segments(&self) -> &[Segment] {
+            fn segments(&self) -> &[crate::linalg::Segment] {
                 match self { $(Self::$kind(law) => law.segments()),* }
             }
 

@@ -37,7 +37,6 @@ pub use sequence::Piece;
 pub use table::{SplineDegree, SplineEndRates, SplineEnds, Table};
 
 use crate::expression::{self, ExpressionError, Range, Stretch};
-use crate::linalg::Segment;
 use crate::number::{self, Dual, Interval, Jet, Real};
 
 kinds! {
@@ -424,12 +423,6 @@ impl Law {
             None => value,
         };
         if self.is_reversed { change * -1.0 } else { change }
-    }
-
-    /// Polynomial pieces of a table as it was written, by powers of the time from the start of each; empty for other
-    /// laws.
-    pub(crate) fn segments(&self) -> &[Segment] {
-        self.kind.segments()
     }
 
     fn check_index(&self, parameter: usize) {

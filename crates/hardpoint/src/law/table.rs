@@ -249,6 +249,12 @@ impl Law {
     pub fn table(table: &Table) -> Result<Self, LawError> {
         Spline::new(table).map(Self::of)
     }
+
+    /// Polynomial pieces of a table as it was written, by powers of the time from the start of each; empty for other
+    /// laws.
+    pub(crate) fn segments(&self) -> &[Segment] {
+        self.kind.segments()
+    }
 }
 
 impl LawKind for Spline {

@@ -6,8 +6,8 @@
 //! of the drivers.
 //!
 //! The angles that couplers count through whole turns, and the parameters of the contacts with curves, are unknowns
-//! like the coordinates. The turn of an angle is the nearest one to the predicted angle. A parameter is corrected on the
-//! piece of its curve on which it is predicted: the numbers of the piece are inputs, too.
+//! like the coordinates. The turn of an angle is the nearest one to the predicted angle. A parameter is corrected on
+//! the piece of its curve on which it is predicted: the numbers of the piece are inputs, too.
 //!
 //! [`step_program`]: super::step_program
 

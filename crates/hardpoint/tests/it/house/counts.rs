@@ -25,7 +25,7 @@ const CEILINGS: &[(&str, [usize; 5])] = &[
     ("expression", [1, 0, 2, 76, 0]),
     ("hardpoint-cli", [14, 0, 14, 1057, 0]),
     ("hardpoint-code", [0, 0, 0, 122, 0]),
-    ("hardpoint-export", [4, 0, 0, 1316, 0]),
+    ("hardpoint-export", [4, 0, 0, 1309, 0]),
     ("hardpoint-file", [12, 0, 0, 293, 0]),
     ("hardpoint-import", [36, 0, 10, 0, 0]),
     ("hardpoint-report", [10, 0, 5, 465, 3]),
