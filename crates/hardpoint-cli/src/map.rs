@@ -81,9 +81,12 @@ fn map_of(session: &Session, options: &args::Map) -> Result<Outcome, Outcome> {
     // The mechanism can be driven, or the reasons are given.
     session.plan(&file, options.common.formulation())?;
     let found = {
-        let _working = session.working("proving the errors of a table");
-        let more = || !session.interrupted();
-        solve(&file.model, options.common.formulation(), &request, &more)
+        let mut meter = session.meter("proving", "cells");
+        let mut more = |proved: usize, cells: usize| {
+            meter.show(proved, cells);
+            !session.interrupted()
+        };
+        solve(&file.model, options.common.formulation(), &request, &mut more)
     };
     let table = found.map_err(|error| failed(session, &file, &request, &error))?;
     // Modelica is in SI.
@@ -164,7 +167,10 @@ fn error_of(
     if written.is_empty() {
         let mut all = Vec::new();
         for (_, dimension) in outputs {
-            all.push((ErrorScope::Dimension(*dimension), of_dimension(*dimension)?));
+            let scope = ErrorScope::Dimension(*dimension);
+            if !all.iter().any(|(other, _)| *other == scope) {
+                all.push((scope, of_dimension(*dimension)?));
+            }
         }
         return Ok(all);
     }

@@ -81,6 +81,7 @@ impl Meter {
             self.bar = Some(bar);
         }
         if let Some(bar) = &self.bar {
+            bar.set_length(total as u64);
             bar.set_position(done as u64);
         }
     }

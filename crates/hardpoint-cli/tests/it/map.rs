@@ -68,6 +68,19 @@ fn the_error_of_a_plain_number_has_no_unit() {
 }
 
 #[test]
+fn one_number_is_the_permitted_error_of_several_outputs_of_one_unit() {
+    let bench = Bench::with(&[]);
+    bench.put("crank.toml", CRANK);
+    let over = ["map", "crank.toml", "--over", "motor=0..30deg", "--of", "A.x,A.y,ratio", "--error", "0.001"];
+    let output = bench.run(&[&over[..], &["-o", "x.json"]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let json = bench.json("x.json");
+    for output in json["outputs"].as_array().unwrap() {
+        assert!(output["proved_error"].as_f64().unwrap() <= 0.001, "{output}");
+    }
+}
+
+#[test]
 fn the_ends_of_a_table_are_the_numbers_of_the_request() {
     let bench = Bench::with(&[]);
     bench.put("crank.toml", &CRANK.replace("angle = \"rad\"", "angle = \"deg\""));

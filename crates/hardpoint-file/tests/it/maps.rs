@@ -48,7 +48,7 @@ fn table(
     interpolation: Interpolation,
 ) -> MapTable {
     let request = request(model, over, of, interpolation);
-    let table = solve(model, Formulation::Relative, &request, &|| true);
+    let table = solve(model, Formulation::Relative, &request, &mut |_, _| true);
     let table = table.unwrap_or_else(|e| panic!("{e:?}"));
     for (column, (name, error)) in table.columns.iter().zip(of) {
         assert!(column.proved > 0.0 && column.proved <= *error, "{name}: {} of {error}", column.proved);
@@ -271,10 +271,34 @@ fn the_error_of_a_map_over_three_drivers_is_below_its_bound() {
     assert!(worst[0] <= 1.0, "{worst:?}");
 }
 
+#[test]
+fn a_map_reports_its_progress_and_can_be_ended() {
+    let model = model(&gallery("three_rrr"));
+    let over =
+        [("motor_1", 0.0), ("motor_2", 0.0), ("motor_3", 0.0)].map(|(name, from)| (name, [from, 0.05]));
+    let request = request(&model, &over, &[("x", 1e-5)], Interpolation::Hermite);
+    let mut reports: Vec<[usize; 2]> = Vec::new();
+    let table = solve(&model, Formulation::Relative, &request, &mut |proved, cells| {
+        reports.push([proved, cells]);
+        true
+    });
+    let table = table.unwrap_or_else(|e| panic!("{e:?}"));
+    assert_eq!(reports.last(), Some(&[table.cells(); 2]));
+    let half = reports.len() / 2;
+    let mut left = half;
+    let ended = solve(&model, Formulation::Relative, &request, &mut |_, _| {
+        left = left.saturating_sub(1);
+        left > 0
+    });
+    assert!(matches!(ended, Err(MapError::Interrupted)), "{ended:?}");
+}
+
 fn refused(text: &str, over: &[(&str, [f64; 2])], of: &[(&str, f64)]) -> MapError {
     let model = model(text);
     let request = request(&model, over, of, Interpolation::Hermite);
-    solve(&model, Formulation::Relative, &request, &|| true).map(|table| table.positions()).unwrap_err()
+    solve(&model, Formulation::Relative, &request, &mut |_, _| true)
+        .map(|table| table.positions())
+        .unwrap_err()
 }
 
 #[test]

@@ -77,8 +77,8 @@ fn a_table_over_a_reversed_driver_has_the_values_of_its_laws() {
             interpolation,
         };
         let request = Request::of(&model, overrides).unwrap();
-        let table =
-            solve(&model, Formulation::Relative, &request, &|| true).unwrap_or_else(|e| panic!("{e:?}"));
+        let table = solve(&model, Formulation::Relative, &request, &mut |_, _| true)
+            .unwrap_or_else(|e| panic!("{e:?}"));
         for k in 0..=1000 {
             let value = -0.5 + 2.5 * f64::from(k) / 1000.0;
             let error = (table.value(0, &[value]) - place(0.3, value)[0]).abs();

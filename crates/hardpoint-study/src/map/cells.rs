@@ -20,6 +20,8 @@ const SHARP: f64 = 1.5;
 /// Number of times that the boxes of a cell are halved to sharpen bounds, by the number of drivers: a box of three
 /// drivers has the cost of some hundred boxes of one.
 const MOST_HALVINGS: [usize; 3] = [3, 4, 2];
+/// Number of entries for all numbers of halvings.
+const MOST_LEVELS: usize = 5;
 /// Number of times that a range is halved before nothing is proved in a part of it.
 const MOST_PARTS: i32 = 14;
 /// Error of a conversion of units and of the drivers' values, in units of the value.
@@ -67,7 +69,8 @@ struct CellError {
     along: usize,
 }
 
-/// Builds a table. `more` is called regularly; if it returns false, the study ends.
+/// Builds a table. `more` is called regularly, with the number of proved cells and that of all cells of the present
+/// grid; if it returns false, the study ends.
 ///
 /// # Errors
 /// A [`MapError`].
@@ -75,7 +78,7 @@ pub fn solve(
     model: &Model,
     formulation: Formulation,
     request: &Request,
-    more: &(dyn Fn() -> bool + Sync),
+    more: &mut dyn FnMut(usize, usize) -> bool,
 ) -> Result<MapTable, MapError> {
     let analysis = Analysis::with(model, formulation).map_err(MapError::Topology)?;
     let drivers: Vec<DriverId> = request.axes.iter().map(|axis| axis.driver).collect();
@@ -97,6 +100,8 @@ pub fn solve(
         ranges,
         boxes: HashMap::new(),
         nodes: HashMap::new(),
+        excess: [0.0; MOST_LEVELS],
+        proved: [0, 1],
         more,
     };
     search.reach_corners()?;
@@ -121,7 +126,12 @@ struct Search<'a> {
     ranges: Part,
     boxes: HashMap<Key, BoxResult>,
     nodes: HashMap<Key, Rc<Node>>,
-    more: &'a (dyn Fn() -> bool + Sync),
+    /// Per number of halvings of a cell: the last error of a cell of this grid in units of that from the derivatives at
+    /// its points, to begin with the boxes that will do; 0 if it is not known.
+    excess: [f64; MOST_LEVELS],
+    /// Number of proved cells, and of all.
+    proved: [usize; 2],
+    more: &'a mut dyn FnMut(usize, usize) -> bool,
 }
 
 impl Search<'_> {
@@ -139,6 +149,8 @@ impl Search<'_> {
         let mut cells = vec![Cell::default()];
         loop {
             let mut halved: HashSet<(usize, usize)> = HashSet::new();
+            self.excess = [0.0; MOST_LEVELS];
+            self.proved = [cells.iter().filter(|cell| cell.proved.is_some()).count(), cells.len()];
             for (c, cell) in cells.iter_mut().enumerate().filter(|(_, cell)| cell.proved.is_none()) {
                 let places = places(&knots, c);
                 // Halved already on account of another cell: the halves may do.
@@ -184,7 +196,7 @@ impl Search<'_> {
                 return Ok(Some(error.along));
             }
         }
-        let at_points = {
+        let (at_points, along) = {
             let mut most = vec![vec![0.0_f64; self.asked.len()]; self.request.outputs.len()];
             let middle = part.iter().map(|[from, to]| 0.5 * (from + to)).collect();
             for point in corners(part).chain([middle]) {
@@ -193,9 +205,19 @@ impl Search<'_> {
                 let found = self.magnitudes_of(&found);
                 join(&mut most, &found);
             }
-            self.error(&most, &widths).ratio
+            let error = self.error(&most, &widths);
+            (error.ratio, error.along)
         };
-        let mut halvings = 0;
+        let most = MOST_HALVINGS[part.len() - 1];
+        // No boxes would do, as in other cells of this grid.
+        if at_points <= 1.0 && at_points * self.excess[most] > SHARP {
+            return Ok(Some(along));
+        }
+        // Larger boxes have failed in cells like this one.
+        let mut halvings = match at_points <= 1.0 {
+            true => (0..most).find(|h| !(at_points * self.excess[*h] > 1.0)).unwrap_or(most),
+            false => 0,
+        };
         loop {
             let mut boxes = Vec::new();
             let of = self.over(part, halvings, &mut boxes)?;
@@ -203,13 +225,13 @@ impl Search<'_> {
             let error = self.error(&known.of, &widths);
             cell.known = Some(known.clone());
             cell.is_sharp = error.ratio <= SHARP * at_points;
+            if at_points > 0.0 {
+                self.excess[halvings] = error.ratio / at_points;
+            }
             if self.accept(cell, &known, &error, part, &widths)? {
                 return Ok(None);
             }
-            if at_points > 1.0
-                || cell.is_sharp && error.ratio > SHARP
-                || halvings == MOST_HALVINGS[part.len() - 1]
-            {
+            if at_points > 1.0 || cell.is_sharp && error.ratio > SHARP || halvings == most {
                 return Ok(Some(error.along));
             }
             halvings += 1;
@@ -254,6 +276,7 @@ impl Search<'_> {
         let all: Vec<f64> = all.iter().map(|x| x.high).collect();
         let is_permitted = all.iter().zip(&self.request.outputs).all(|(x, output)| *x <= output.error);
         if is_permitted {
+            self.proved[0] += 1;
             cell.proved = Some(Rc::new(all));
         }
         Ok(is_permitted)
@@ -293,9 +316,7 @@ impl Search<'_> {
         halvings: usize,
         boxes: &mut Vec<Part>,
     ) -> Result<Vec<Vec<f64>>, MapError> {
-        if !(self.more)() {
-            return Err(MapError::Interrupted);
-        }
+        self.go_on()?;
         let widths: Vec<f64> = self.ranges.iter().map(|[from, to]| to - from).collect();
         let size = |n: usize| (part[n][1] - part[n][0]) / widths[n];
         if halvings == 0 {
@@ -335,6 +356,12 @@ impl Search<'_> {
             }
         }
         Ok(all.unwrap_or_default())
+    }
+
+    /// Reports the progress; fails if the caller ends the study.
+    fn go_on(&mut self) -> Result<(), MapError> {
+        let [proved, cells] = self.proved;
+        if (self.more)(proved, cells) { Ok(()) } else { Err(MapError::Interrupted) }
     }
 
     /// Magnitudes over one box.
@@ -386,6 +413,7 @@ impl Search<'_> {
     fn connect(&mut self, knots: &[Vec<f64>], cells: &[Cell]) -> Result<(), MapError> {
         let begins: Vec<f64> = self.ranges.iter().map(|[from, to]| 0.0_f64.clamp(*from, *to)).collect();
         for (c, cell) in cells.iter().enumerate() {
+            self.go_on()?;
             let Some(known) = &cell.known else { continue };
             let part: Part = places(knots, c).iter().zip(knots).map(|(k, x)| [x[*k], x[*k + 1]]).collect();
             let inside = contains(&part, &begins).then(|| begins.clone());

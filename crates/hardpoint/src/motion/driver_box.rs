@@ -173,7 +173,7 @@ impl BoxSolver {
         // phi(m, d) + phi_d(m, D) (D - d): one term for each variable, to be preconditioned before it is added.
         let (start, terms) = match wanted.narrow {
             Some(narrow) => {
-                let fixed = |k: usize| Taylor::constant(points[k]);
+                let fixed = |k: usize| Taylor::constant(points[k]).to_degree(1);
                 let moved = self.0.series.rows(topology, b, &fixed, &found.centres);
                 let term = |v: usize| moved.iter().map(|row| row.coefficients()[1 + v]).collect::<Vec<_>>();
                 (narrow.residuals[b.0].clone(), (0..wanted.since.len()).map(term).collect())
@@ -243,7 +243,7 @@ impl BoxSolver {
             let lower = |k: usize| {
                 let mut x = found.coordinates[unknowns[k].0];
                 x.coefficients_mut()[begin..].fill(Interval::zero());
-                x
+                x.to_degree(degrees[begin])
             };
             let demand = self.0.series.rows(topology, b, &lower, &found.centres);
             for e in begin..end {

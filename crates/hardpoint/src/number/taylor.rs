@@ -13,6 +13,9 @@ use super::{Function, Interval, Real};
 /// (`docs/theory.md`, section 20): 5 for one variable, 16 for two, 44 for three. Constants have one, and combine with
 /// all; a quantity in one variable and one in two do not combine.
 ///
+/// The degree of a quantity may be limited ([`to_degree`](Self::to_degree)); that of a result is the lowest of its
+/// operands.
+///
 /// Every operation is exact up to rounding. Functions follow from their differential equations: with the operator
 /// `D = sum x_i d/dx_i`, which multiplies a coefficient by its degree, `D f(u) = f'(u) D u`.
 ///
@@ -27,9 +30,10 @@ use super::{Function, Interval, Real};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Taylor<T> {
-    /// Those beyond the ones of its variables are zero.
+    /// Only those of its variables, up to its degree, are valid.
     coefficients: [T; MOST],
     variables: u8,
+    degree: u8,
 }
 
 /// Exponents of a monomial.
@@ -41,8 +45,12 @@ const HIGHEST: u8 = 4;
 /// Highest number of variables.
 const VARIABLES: usize = 3;
 
-/// Number of coefficients by number of variables.
-const COEFFICIENTS: [usize; VARIABLES + 1] = [1, 5, 16, MOST];
+/// Highest degree of a monomial.
+const DEGREE: u8 = HIGHEST + 2;
+
+/// Number of coefficients by number of variables, and by degree.
+const COEFFICIENTS: [[usize; DEGREE as usize + 1]; VARIABLES + 1] =
+    [[1; 7], [1, 2, 3, 4, 5, 5, 5], [1, 3, 6, 10, 14, 16, 16], [1, 4, 10, 20, 32, 41, MOST]];
 
 /// Number of coefficients in all variables.
 const MOST: usize = 44;
@@ -121,7 +129,7 @@ impl<T: Real> Taylor<T> {
     /// Number of coefficients that may differ from zero.
     #[inline]
     fn len(&self) -> usize {
-        COEFFICIENTS[usize::from(self.variables)]
+        COEFFICIENTS[usize::from(self.variables)][usize::from(self.degree)]
     }
 
     /// A quantity that does not depend on the variables.
@@ -129,7 +137,7 @@ impl<T: Real> Taylor<T> {
     pub fn constant(value: T) -> Self {
         let mut coefficients = [T::zero(); MOST];
         coefficients[0] = value;
-        Self { coefficients, variables: 0 }
+        Self { coefficients, variables: 0, degree: DEGREE }
     }
 
     /// Variable k of `variables` at this value.
@@ -141,6 +149,12 @@ impl<T: Real> Taylor<T> {
         let mut f = Self { variables: variables as u8, ..Self::constant(value) };
         f.coefficients[1 + k] = T::one();
         f
+    }
+
+    /// This quantity without coefficients above a degree: all that is computed from it has none either.
+    pub(crate) fn to_degree(mut self, degree: usize) -> Self {
+        self.degree = self.degree.min(degree as u8);
+        self
     }
 
     /// A quantity of `variables` variables of which only the value is known: all other coefficients are `rest`.
@@ -156,8 +170,8 @@ impl<T: Real> Taylor<T> {
         self.coefficients[0]
     }
 
-    /// Coefficients by degree: the constant, then those of the variables. All that are zero for every quantity of its
-    /// variables follow.
+    /// Coefficients by degree: the constant, then those of the variables; only those of its variables up to its degree
+    /// are valid.
     #[inline]
     pub const fn coefficients(&self) -> &[T] {
         &self.coefficients
@@ -206,6 +220,7 @@ impl<T: Real> Taylor<T> {
     #[inline(always)]
     fn both(mut self, o: &Self, f: impl Fn(T, T) -> T) -> Self {
         self.variables = self.variables.max(o.variables);
+        self.degree = self.degree.min(o.degree);
         for (a, b) in self.coefficients_mut().iter_mut().zip(&o.coefficients) {
             *a = f(*a, *b);
         }
@@ -215,7 +230,8 @@ impl<T: Real> Taylor<T> {
     /// A constant that is to have derivatives by the variables of these.
     #[inline]
     fn constant_in(value: T, a: &Self, b: &Self) -> Self {
-        Self { variables: a.variables.max(b.variables), ..Self::constant(value) }
+        let (variables, degree) = (a.variables.max(b.variables), a.degree.min(b.degree));
+        Self { variables, degree, ..Self::constant(value) }
     }
 
     /// f(u) with the value f and `D f = s D u`, from the slope s, a function of u: `k f_k = sum j s_i u_j`.
@@ -343,19 +359,21 @@ impl<T: Real> Mul for Taylor<T> {
     fn mul(self, o: Self) -> Self {
         // Most factors are constant.
         if o.is_still() {
-            return self.times(o.coefficients[0]);
+            return self.times(o.coefficients[0]).to_degree(o.degree.into());
         }
         if self.is_still() {
-            return o.times(self.coefficients[0]);
+            return o.times(self.coefficients[0]).to_degree(self.degree.into());
         }
         let mut f = Self::constant_in(T::zero(), &self, &o);
         let m = f.monomials();
+        // Per coefficient, a bit: it is not zero.
+        let [left, right] = super::both([&self, &o], |x| {
+            (0..f.len()).fold(0_u64, |bits, k| bits | u64::from(!x.coefficients[k].is_zero()) << k)
+        });
         for k in 0..f.len() {
             let mut sum = self.coefficients[k] * o.coefficients[0];
             // Most coefficients are zero where not every quantity depends on every variable.
-            for (i, j) in
-                m.of(k).filter(|(i, j)| !self.coefficients[*i].is_zero() && !o.coefficients[*j].is_zero())
-            {
+            for (i, j) in m.of(k).filter(|(i, j)| (left >> i) & (right >> j) & 1 != 0) {
                 sum += self.coefficients[i] * o.coefficients[j];
             }
             f.coefficients[k] = sum;
