@@ -34,6 +34,11 @@ export const NO_3D = ['--disable-gpu', '--disable-software-rasterizer', '--disab
 /** Without the parts that only a window needs, a page takes three quarters of the CPU time. */
 const BROWSERS = ['chromium-headless-shell', 'chromium']
 
+/** The preference is there unless the reader has chosen otherwise, also after the page is opened again. */
+const PREFER_OWN_MOTION = () => {
+  localStorage['hardpoint.own-motion'] ??= 'yes'
+}
+
 /** `CHROMIUM` names the browser where none of these is on the path. */
 function chromiumPath(): string {
   const folders = (process.env.PATH ?? '').split(delimiter)
@@ -55,14 +60,18 @@ export interface Visit {
   complaints: string[]
 }
 
-/** `engine: false` is a browser that runs no WebAssembly: the page stays the report that it was made as. */
+/**
+ * `engine: false` is a browser that runs no WebAssembly: the page stays the report that it was made as. With
+ * `derived: false` a reader is assumed who prefers the motion of the model to one that the page derives from it.
+ */
 export async function visit(
   browser: Browser,
   url: string,
-  { engine = true, ...options }: BrowserContextOptions & { engine?: boolean } = {},
+  { engine = true, derived = false, ...options }: BrowserContextOptions & { engine?: boolean; derived?: boolean } = {},
 ): Promise<Visit> {
   const page = await browser.newPage({ viewport: { width: 1200, height: 760 }, ...options })
   if (!engine) await page.addInitScript(() => Reflect.deleteProperty(globalThis, 'WebAssembly'))
+  if (!derived) await page.addInitScript(PREFER_OWN_MOTION)
   page.setDefaultTimeout(WAIT)
   const complaints: string[] = []
   page.on('console', (message) => {

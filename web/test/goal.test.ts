@@ -1,6 +1,7 @@
 import { describe, expect, test } from 'vitest'
 import { setKey } from '../src/editor/toml_edit'
 import { boundsToml, goalToml, toleranceToml } from '../src/studio/goal'
+import { separateMotions } from '../src/studio/motions'
 
 describe('a key that is set', () => {
   test.each([
@@ -70,5 +71,23 @@ describe('bounds and tolerances', () => {
   })
   test('of one coordinate of a point has its own tolerance', () => {
     expect(toleranceToml(text, 'outer_z', 0.2)).toContain('[tolerance.variables]\nouter_z = 0.2')
+  })
+})
+
+describe('cases with one moving driver', () => {
+  const text = '[drivers]\nrack = { joint = "slide", law = "30*sin(t)" }\nspring = { joint = "strut", law = 4 }\n'
+
+  test('follow the text, to whose end they are added, in the order of the drivers', () => {
+    const made = separateMotions(text, ['spring', 'rack'])!
+    expect(made.names).toEqual(['spring', 'rack'])
+    expect(made.text).toBe(text + made.added)
+    expect(made.added).toContain('[cases.spring]\nlaws = { spring = 4 }')
+    expect(made.added).toContain('[cases.rack]\nlaws = { rack = "30*sin(t)" }')
+  })
+
+  test('are not derived from a text with cases, or with a law in several lines', () => {
+    expect(separateMotions(`${text}[cases.bump]\nlaws = { spring = 4 }\n`, ['spring', 'rack'])).toBeUndefined()
+    const points = text.replace('law = 4', 'law = [\n0, 4]')
+    expect(separateMotions(points, ['spring', 'rack'])).toBeUndefined()
   })
 })

@@ -231,26 +231,62 @@ describe('work on a design', () => {
     await expect.poll(() => asked).toEqual(['beforeunload'])
   })
 
-  test('moves each driver alone in cases of its own, over wheel travel', async () => {
-    await open('front_axle')
-    await page.getByTestId('separate').click()
-    await page.getByTestId('case').waitFor()
+  test('opens on a motion with one driver that it derives, and keeps a preference for all drivers', async () => {
+    const text = readFileSync('../models/front_axle.toml', 'utf8')
+    const toml = async () => {
+      await page.getByTestId('export').click()
+      const [file] = await Promise.all([page.waitForEvent('download'), page.getByTestId('export-toml').click()])
+      return readFileSync((await file.path())!, 'utf8')
+    }
+    visited = await visit(flat, models.front_axle, { derived: true })
+    page = visited.page
+    await ready(page)
+    expect(await page.getByTestId('derived-motion').innerText()).toContain('bump moves alone')
+    expect(await page.getByTestId('case').locator('option').allInnerTexts()).toEqual([
+      'bump alone',
+      'steering alone',
+      'all drivers',
+    ])
+    expect(await over('plot-0')).toBe('over left.wheel_travel')
+    // Values, sensitivities and designs are of this motion; the text is that of the model, with the change alone.
+    const value = (name: string) => page.getByTestId(`card-${name}`).getByTestId('card-value').innerText()
+    expect(await value('largest_camber')).toBe('1.99')
+    expect(await value('bump_steer')).toBe('0.02832')
+    await change('tie_rod_outer_z').fill('1')
+    await change('tie_rod_outer_z').press('Enter')
+    await settled(page)
+    expect(await value('bump_steer')).not.toBe('0.02832')
+    const changed = await toml()
+    expect(changed).not.toContain('[cases')
+    expect(changed.split('\n').length).toBe(text.split('\n').length)
+    // Each case keeps its own axes.
+    await page.getByTestId('case').selectOption({ label: 'steering alone' })
+    await page.waitForFunction(() => document.querySelector('[data-testid=title]')!.textContent!.includes('steering'))
+    await ready(page)
+    expect(await over('plot-0')).not.toBe('over left.wheel_travel')
+    await page.getByTestId('case').selectOption({ label: 'bump alone' })
+    await page.waitForFunction(() => document.querySelector('[data-testid=title]')!.textContent!.includes('bump'))
+    await ready(page)
+    expect(await over('plot-0')).toBe('over left.wheel_travel')
+    await page.getByTestId('write-cases').click()
+    await page.getByTestId('derived-motion').waitFor({ state: 'detached' })
+    await ready(page)
     expect(await page.getByTestId('case').locator('option').allInnerTexts()).toEqual([
       'bump',
       'steering',
       'all_drivers',
     ])
     expect(await over('plot-0')).toBe('over left.wheel_travel')
-    // Each case keeps its own axes.
-    await page.getByTestId('case').selectOption('steering')
-    await page.waitForFunction(() => document.querySelector('[data-testid=title]')!.textContent!.includes('steering'))
-    await ready(page)
-    expect(await over('plot-0')).not.toBe('over left.wheel_travel')
-    await page.getByTestId('case').selectOption('bump')
-    await page.waitForFunction(() => document.querySelector('[data-testid=title]')!.textContent!.includes('bump'))
-    await ready(page)
-    expect(await over('plot-0')).toBe('over left.wheel_travel')
+    expect(await toml()).toContain('[cases.bump]\nlaws = { left_bump = "60*sin(4*pi*t)" }')
     await page.getByTestId('undo').click()
-    await page.getByTestId('separate').waitFor()
+    await page.getByTestId('own-motion').click()
+    await page.getByTestId('derived-motion').waitFor({ state: 'detached' })
+    await ready(page)
+    expect(await over('plot-0')).toBe('over time')
+    await page.getByTestId('reset-all').click()
+    await settled(page)
+    await page.reload()
+    await ready(page)
+    expect(await over('plot-0')).toBe('over time')
   })
 })

@@ -69,6 +69,7 @@ describe('every model', () => {
     const { page, complaints } = await visit(browser, url, {
       viewport: IMAGES ? LARGE : SMALL,
       colorScheme: order[0],
+      derived: true,
     })
     for (const scheme of order) {
       await page.emulateMedia({ colorScheme: scheme })
@@ -105,7 +106,7 @@ describe('every model', () => {
   })
 
   test.skipIf(!IMAGES)("the strut's page is the README's picture", async () => {
-    const { page } = await visit(browser, models.macpherson, { viewport: LARGE })
+    const { page } = await visit(browser, models.macpherson, { viewport: LARGE, derived: true })
     // Not a moment at which everything is in the design configuration.
     await scrub(page, 120)
     await drawn(page)

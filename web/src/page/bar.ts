@@ -13,7 +13,7 @@ export interface Offers {
 /** Title and file, compared design, search, export and help. */
 export function bar(state: State, { find, exports, help }: Offers): HTMLElement {
   const { title, file } = state.report
-  return el(
+  const bar = el(
     'header',
     { class: 'topbar' },
     models(),
@@ -36,6 +36,12 @@ export function bar(state: State, { find, exports, help }: Offers): HTMLElement 
       '?',
     ),
   )
+  // The drawer begins below the bar, which may have several rows.
+  const observer = new ResizeObserver(() => {
+    if (bar.isConnected) document.body.style.setProperty('--bar', `${bar.offsetHeight}px`)
+  })
+  observer.observe(bar)
+  return bar
 }
 
 /** Link to the page of all models, of which this page is one. */

@@ -24,6 +24,7 @@ export interface Surroundings {
 export interface Proposal {
   of: string
   over?: string
+  case?: string
 }
 
 const AIMS = { minimise: 'minimise', bring: 'bring to', keep: 'keep within' } as const
@@ -117,11 +118,12 @@ export class GoalForm {
     this.#choose(proposal, true)
   }
 
-  #choose({ of, over }: Proposal, isOpen: boolean): void {
+  #choose({ of, over, case: shown }: Proposal, isOpen: boolean): void {
     const isMetric = this.metrics.some(({ metric }) => metric === of)
     this.#of.value = isMetric ? `metric ${of}` : `of ${of}`
     if (!this.#of.value) this.#of.selectedIndex = 0
     this.#over.value = over ?? ''
+    this.#case.value = shown ?? ''
     this.element.open = isOpen
     this.sync()
   }

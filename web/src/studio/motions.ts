@@ -3,26 +3,37 @@ import { moverOf } from '../page/contents'
 import type { Report } from '../report'
 import { hasOneFreedom, isTravel } from '../sheet'
 
-/** A text with its cases, the first of which is to be shown. */
+/** A text with a case for each driver, in which that driver alone moves, and one in which all move as before. */
 export interface SeparateMotions {
   text: string
-  first: string
+  /** Lines at the end of the text that are not in the original. */
+  added: string
+  /** Names of the cases with one moving driver, the first of which is to be shown. */
+  names: string[]
 }
 
 /**
- * Adds a case for each driver of a text, in which that driver alone moves, and one in which all move as before: over
- * wheel travel, curves are then lines instead of loops. The driver that moves the wheel most comes first. Undefined for
- * a motion with one degree of freedom, without wheel travel, or with laws that are not written in one line.
+ * Names of the drivers of a motion with wheel travel, if several move independently; the driver that moves the wheel
+ * most comes first. Undefined for other motions, and for those of a model with cases.
  */
-export function separateMotions(text: string, report: Report): SeparateMotions | undefined {
+export function independentDrivers(report: Report): string[] | undefined {
   const travel = report.quantities.find(isTravel)
   if (!travel || hasOneFreedom(report)) return undefined
+  const mover = moverOf(report, travel.index)?.name
+  const drivers = [...report.drivers].sort((a, b) => Number(b.name === mover) - Number(a.name === mover))
+  return drivers.map(({ name }) => name)
+}
+
+/**
+ * Adds a case for each of these drivers to a text: over wheel travel, curves are then lines instead of loops. Undefined
+ * for a text that has cases, and for laws that are not written in one line.
+ */
+export function separateMotions(text: string, drivers: readonly string[]): SeparateMotions | undefined {
+  if (caseNames(text).length > 0) return undefined
   const entries = outline(text)
   const isMirrored = entries.some(({ path }) => path[0] === 'mirror')
   const laws = new Map<string, string>()
-  const mover = moverOf(report, travel.index)?.name
-  const drivers = [...report.drivers].sort((a, b) => Number(b.name === mover) - Number(a.name === mover))
-  for (const { name } of drivers) {
+  for (const name of drivers) {
     const law = entries.find(({ path, heading }) => !heading && path.join('\n') === `drivers\n${name}\nlaw`)
     // A mirrored case gives both sides the law of one.
     const title = isMirrored ? name.replace(/(left|right)[_-]?/, '') : name
@@ -33,5 +44,12 @@ export function separateMotions(text: string, report: Report): SeparateMotions |
   }
   if (laws.size < 2) return undefined
   const all = '\n[cases.all_drivers]\nother_drivers = "as_in_model"\n'
-  return { text: `${text.trimEnd()}\n${[...laws.values(), all].join('')}`, first: [...laws.keys()][0] }
+  const added = [...laws.values(), all].join('')
+  return { text: `${text.trimEnd()}\n${added}`, added, names: [...laws.keys()] }
+}
+
+/** Names of the cases that a text has. */
+export function caseNames(text: string): string[] {
+  const names = outline(text).flatMap(({ path: [table, name] }) => (table === 'cases' && name ? [name] : []))
+  return [...new Set(names)]
 }

@@ -1,5 +1,5 @@
 import './studio.css'
-import { el } from '../dom'
+import { el, prose } from '../dom'
 import type { Editor } from '../editor/editor'
 import { openEditor } from '../editor/open'
 import type { StudyResult } from '../engine/engine'
@@ -9,6 +9,7 @@ import { Solver } from '../engine/solver'
 import { pageFile, storedDesign } from '../export/page_file'
 import { save } from '../export/save'
 import { messageOf } from '../format'
+import { prefer, preference } from '../preferences'
 import type { Picture } from '../linkage/backdrop'
 import { Drawing } from '../linkage/drawing'
 import { page, type PageMemory, type PageParts, slot } from '../page'
@@ -34,7 +35,7 @@ import { PathPoints } from './path_points'
 import type { PathTask } from './path_task'
 import { PointsPane } from './points'
 import { connect } from './server'
-import { separateMotions } from './motions'
+import { caseNames, independentDrivers, type SeparateMotions, separateMotions } from './motions'
 import { type ServerBar, serverBar } from './server_bar'
 import { linkedSession, linkOf, type SavedDesign, type Session, Storage } from './session'
 import { stopReason } from './stops'
@@ -48,6 +49,8 @@ const REST = 200
 const SAVE = 400
 /** File of a drawn linkage, and its unit of length. */
 const DRAWN = { file: 'linkage.toml', unit: 'mm' }
+/** Preference for the motion of the model, where the page would open with one that it derives. */
+const OWN_MOTION = 'own-motion'
 /** Screens on which the pane of the text would hide the view. */
 const NARROW = '(max-width: 1000px)'
 
@@ -117,6 +120,8 @@ export class Studio {
   /** Choices by case, for when it is shown again; and those that the next page is to make. */
   readonly #choices = new Map<string | null, Choices>()
   #recalled?: Choices
+  /** Drivers that move independently in the motion of the model; undefined if curves over travel are no loops. */
+  #drivers?: readonly string[]
   /** Report and model that the page was made of. */
   readonly #first: { report: Report; model: ModelText }
   readonly #recorded: readonly VariableSetting[]
@@ -140,6 +145,7 @@ export class Studio {
     this.#checks = new Solver(module)
     this.#text = model.text
     this.#first = { report: state.report, model }
+    this.#drivers = independentDrivers(state.report)
     this.#recorded = state.recorded
     this.history = new History({ text: model.text, settings: [], label: 'original' })
     this.history.setFileDesigns(state.report.named_designs, model.text)
@@ -162,7 +168,8 @@ export class Studio {
       if (isLost || (this.#storage.failed && this.history.changed)) event.preventDefault()
     })
     const host = {
-      studies: new Workers(module, (text) => ({ ...this.model, text })),
+      // The motion of a study is that of the text.
+      studies: new Workers(module, (text) => ({ ...this.model, text, case: this.#isDerived ? null : this.model.case })),
       text: () => this.#text,
       present: () => this.#currentText(),
       unwritten: () => this.#unwritten,
@@ -174,7 +181,7 @@ export class Studio {
         cases: () => this.#opened?.cases ?? [],
         selected: () => this.#proposal(),
         add: (judged: Judged, aim: Aim, chosen: Chosen) =>
-          void this.edit((text) => goalToml(text, judged, aim, chosen).text, 'goal'),
+          void this.edit((text) => goalToml(this.#textFor(text, judged), judged, aim, chosen).text, 'goal'),
       },
     }
     const mark = (name: string) => (running: boolean) => this.#drawer.mark(name, running)
@@ -204,7 +211,7 @@ export class Studio {
     goalsOfCards(
       root,
       () => this.#opened !== undefined,
-      (of) => this.propose({ of, over: this.#proposal().over }),
+      (of) => this.propose({ ...this.#proposal(), of }),
     )
     const server = connect(document)
     const own = {
@@ -301,7 +308,8 @@ export class Studio {
   /** Opens the model, then the design of the address, or the offer to restore stored work. */
   async #begin(): Promise<void> {
     const linked = await linkedSession()
-    await this.#open()
+    const first = linked || this.#stored || storedDesign(document) ? undefined : this.#openingCase()
+    if (first === undefined || !(await this.#openCase(first))) await this.#open()
     if (await this.#restoreSaved()) return
     if (linked) await this.#resume(linked, 'link')
     else if (this.#stored) this.#offerStored(this.#stored)
@@ -346,7 +354,11 @@ export class Studio {
   #proposal(): Proposal {
     const { quantities } = this.state.report
     const { quantity, over } = this.state.choice
-    return { of: quantities[quantity]?.name ?? '', over: over === undefined ? undefined : quantities[over].name }
+    return {
+      of: quantities[quantity]?.name ?? '',
+      over: over === undefined ? undefined : quantities[over].name,
+      case: this.#isDerived ? (this.model.case ?? undefined) : undefined,
+    }
   }
 
   /** Bounds and tolerances of variables, which are kept in the text. */
@@ -399,7 +411,7 @@ export class Studio {
     }
     const target = targetButton(figure.plot, drawn, (curve) => {
       this.#targets.add(targetToml(this.model.text, curve).name)
-      void this.edit((text) => targetToml(text, curve).text, `target of ${curve.of}`)
+      void this.edit((text) => targetToml(this.#textFor(text, curve), curve).text, `target of ${curve.of}`)
     })
     const goal = el(
       'button',
@@ -536,7 +548,7 @@ export class Studio {
     const version = ++this.#version
     const { state } = this
     try {
-      const { json } = await this.#drags.ask<OpenReply>({ ask: 'open', model: this.model })
+      const { json } = await this.#drags.ask<OpenReply>({ ask: 'open', model: this.#solvable(this.model) })
       if (version !== this.#version) return
       this.#opened = json
       this.#accepted = []
@@ -589,33 +601,94 @@ export class Studio {
 
   #offerCases(cases: string[]): void {
     if (cases.length > 0) this.state.case = this.model.case ?? cases[0]
-    if (cases.length < 2) return this.#cases.replaceChildren(...this.#separation(cases))
-    const shown = this.model.case ?? cases[0]
+    const motions = this.#motions
+    const shown = this.model.case ?? (motions ? '' : cases[0])
+    const offered = motions
+      ? [...motions.names.map((name) => [name, `${name} alone`]), ['', 'all drivers']]
+      : cases.map((name) => [name, name])
+    if (offered.length < 2) return this.#cases.replaceChildren()
     const select = el(
       'select',
       {
         'aria-label': 'Case',
-        title: `Case ${shown}`,
+        title: motions ? 'Driver that moves' : `Case ${shown}`,
         'data-testid': 'case',
-        onchange: () => void this.#openModel({ ...this.model, case: select.value }, this.state.settings),
+        onchange: () => (motions ? this.#chooseMotion(select.value || null) : void this.#openCase(select.value)),
       },
-      ...cases.map((name) => el('option', { value: name, selected: name === shown }, name)),
+      ...offered.map(([value, name]) => el('option', { value, selected: value === shown }, name)),
     )
     this.#cases.replaceChildren(select)
   }
 
-  /** A button that writes a case for each driver, where curves over wheel travel would be loops. */
-  #separation(cases: string[]): HTMLElement[] {
-    const made = cases.length === 0 ? separateMotions(this.model.text, this.state.report) : undefined
-    if (!made) return []
-    const separate = () => {
-      const { settings } = this.state
-      this.history.go({ text: made.text, settings, label: 'separate motions' })
-      this.#fresh = true
-      void this.#openModel({ ...this.model, text: made.text, case: made.first }, settings)
-    }
-    const title = 'Write a case for each driver, so that curves over wheel travel are lines instead of loops'
-    return [el('button', { type: 'button', title, 'data-testid': 'separate', onclick: separate }, 'Separate motions')]
+  /** Names the motion that the page derived, with buttons for the model's own and for cases in its text. */
+  #derivedNotice(): HTMLElement {
+    const words =
+      `Motion derived from the model: \`${this.model.case}\` moves alone, ` +
+      'all other drivers are fixed in the design configuration.'
+    const button = (name: string, testId: string, title: string, onclick: () => void) =>
+      el('button', { type: 'button', 'data-testid': testId, title, onclick }, name)
+    return el(
+      'p',
+      { class: 'derived-motion', role: 'status', 'data-testid': 'derived-motion' },
+      el('span', {}, ...prose(words)),
+      button('All drivers', 'own-motion', 'Show the motion of the model', () => this.#chooseMotion(null)),
+      button('Write cases', 'write-cases', 'Write a case for each driver into the text of the model', () =>
+        this.#writeCases(),
+      ),
+    )
+  }
+
+  /** Writes the derived cases into the text. */
+  #writeCases(): void {
+    const motions = this.#motions
+    if (motions) void this.edit(() => motions.text, 'cases')
+  }
+
+  /** Shows a derived case or the motion of the model, which the browser remembers. */
+  #chooseMotion(name: string | null): void {
+    prefer(OWN_MOTION, name === null ? 'yes' : 'no')
+    void this.#openCase(name)
+  }
+
+  /** Cases with one moving driver each, which the page derives from the text of the model; undefined if it has none. */
+  get #motions(): SeparateMotions | undefined {
+    return this.#drivers && separateMotions(this.model.text, this.#drivers)
+  }
+
+  /** True if the case that is shown is not in the text of the model. */
+  get #isDerived(): boolean {
+    return this.model.case !== null && this.#motions !== undefined
+  }
+
+  /** The derived case that the page opens with, if its curves over time would otherwise be loops over travel. */
+  #openingCase(): string | undefined {
+    const { report, sheet, changed } = this.state
+    const isOfRun = report.plots.length === 0 && report.over === null && !report.study && !report.sweep && !changed
+    const isWanted = isOfRun && sheet.plots[0]?.over === undefined && preference(OWN_MOTION) !== 'yes'
+    return isWanted && this.model.case === null ? this.#motions?.names[0] : undefined
+  }
+
+  /** Shows another case; false if it could not be solved. */
+  async #openCase(name: string | null): Promise<boolean> {
+    // Curves of a derived motion are over another abscissa than those of all drivers.
+    this.#fresh = this.#motions !== undefined && !this.#choices.has(name)
+    await this.#openModel({ ...this.model, case: name }, this.state.settings)
+    return this.model.case === name
+  }
+
+  /** A model as the engine solves it: with the derived cases in its text, if one of them is shown. */
+  #solvable(model: ModelText): ModelText {
+    if (model.case === null || caseNames(model.text).includes(model.case)) return model
+    const motions = this.#drivers && separateMotions(model.text, this.#drivers)
+    if (motions?.names.includes(model.case)) return { ...model, text: motions.text }
+    // The text that is opened has no such driver any more.
+    return this.#isDerived ? { ...model, case: null } : model
+  }
+
+  /** A text, with the derived cases if a metric is of one of them. */
+  #textFor(text: string, metric: { case?: string } | { metric: string }): string {
+    const isOfCase = 'case' in metric && metric.case !== undefined && this.#isDerived
+    return (isOfCase && this.#drivers && separateMotions(text, this.#drivers)?.text) || text
   }
 
   /** Notes the design as a step of the history, or as part of what the hand does. */
@@ -715,7 +788,7 @@ export class Studio {
       if (settings.length === 0) state.setSensitivities(undefined, [])
       else if (!state.hasCurrentSensitivities) {
         this.#sensing.stop()
-        const found = await this.#sensing.ask<Payload>({ ask: 'page', model: { ...this.model, text } })
+        const found = await this.#sensing.ask<Payload>({ ask: 'page', model: this.#solvable({ ...this.model, text }) })
         const report = read(found.json, found.decode)
         if (!same()) return
         if (hasSameNames(report, state.report)) state.setSensitivities(report, settings)
@@ -739,7 +812,9 @@ export class Studio {
   async #currentText(): Promise<string> {
     const { settings } = this.state
     if (settings.length === 0) return this.#next ?? this.model.text
-    return (await this.#drags.ask<Text>({ ask: 'text', change: settings })).json.text
+    const derived = this.#isDerived ? this.#motions?.added : undefined
+    const { text } = (await this.#drags.ask<Text>({ ask: 'text', change: settings })).json
+    return derived === undefined ? text : text.replace(derived, () => '')
   }
 
   #setText(text: string): void {
@@ -769,6 +844,7 @@ export class Studio {
       const { model: solved, report } = await this.#page(model)
       const former = this.model.case
       this.model = solved
+      if (solved.case === null) this.#drivers = independentDrivers(report)
       this.#next = undefined
       this.history.setFileDesigns(report.named_designs, this.model.text)
       this.#show(report, former)
@@ -792,8 +868,9 @@ export class Studio {
   async #page(model: ModelText): Promise<{ model: ModelText; report: Report }> {
     const { report, model: first } = this.#first
     if (model.text === first.text && model.case === first.case) return { model: first, report }
-    const { json, decode } = await this.#sensing.ask<Payload>({ ask: 'page', model: { ...model, shown: null } })
-    const found = { model: json.model ?? model, report: read(json, decode) }
+    const solvable = { ...this.#solvable(model), shown: null }
+    const { json, decode } = await this.#sensing.ask<Payload>({ ask: 'page', model: solvable })
+    const found = { model: { ...(json.model ?? solvable), text: model.text }, report: read(json, decode) }
     if (model.text === first.text) {
       const { maps, sweep, study } = report
       const metrics = report.metrics && hasCases(report.metrics) ? report.metrics : found.report.metrics
@@ -833,6 +910,7 @@ export class Studio {
       figure: (figure) => this.target(figure),
     })
     if (this.#offer) this.made.notices.append(this.#offer)
+    if (this.#isDerived) this.made.notices.append(this.#derivedNotice())
     this.#placeDrawing()
     state.goToStep(state.step)
     this.#grips = undefined
@@ -863,9 +941,12 @@ export class Studio {
 
   async #solveSnapshot({ step: { text, settings } }: Snapshot): Promise<Design | undefined> {
     if (text === this.model.text) return this.#solveAlone([...settings])
-    await this.#sensing.ask<OpenReply>({ ask: 'open', model: { ...this.model, text } })
+    await this.#sensing.ask<OpenReply>({ ask: 'open', model: this.#solvable({ ...this.model, text }) })
     const { json } = await this.#sensing.ask<Text>({ ask: 'text', change: [...settings] })
-    const answer = await this.#drags.ask<DesignReply>({ ask: 'beside', model: { ...this.model, text: json.text } })
+    const answer = await this.#drags.ask<DesignReply>({
+      ask: 'beside',
+      model: this.#solvable({ ...this.model, text: json.text }),
+    })
     return this.#read(answer.json.design, answer, [...settings])
   }
 
@@ -881,7 +962,10 @@ export class Studio {
     const refusal = (why: string) => `\`${name}\` is not written: ${why}`
     if (written.settings.length === 0) return refusal('it is the original design.')
     try {
-      const check = await this.#checks.ask<CheckReply>({ ask: 'check', model: { ...this.model, text: written.text } })
+      const check = await this.#checks.ask<CheckReply>({
+        ask: 'check',
+        model: this.#solvable({ ...this.model, text: written.text }),
+      })
       const wrong = check.json.messages.find(({ severity }) => severity === 'error')
       if (wrong) return refusal(`${wrong.message}.`)
       // Of another text, or through new variables, the same numbers may be another design.
@@ -913,7 +997,7 @@ export class Studio {
 
   /** A design of a text, solved without a path to it. */
   async #solveIn(text: string, settings: readonly VariableSetting[]): Promise<Design | undefined> {
-    await this.#checks.ask<OpenReply>({ ask: 'open', model: { ...this.model, text } })
+    await this.#checks.ask<OpenReply>({ ask: 'open', model: this.#solvable({ ...this.model, text }) })
     const change = [...settings]
     const answer = await this.#checks.ask<DesignReply>({ ask: 'design', change, from: null, solid: false })
     return answer.json.design ? design(answer.json.design, answer.decode) : undefined
@@ -986,7 +1070,8 @@ export class Studio {
       text: this.#text,
       check: {
         check: async (text) =>
-          (await this.#checks.ask<CheckReply>({ ask: 'check', model: { ...this.model, text } })).json.messages,
+          (await this.#checks.ask<CheckReply>({ ask: 'check', model: this.#solvable({ ...this.model, text }) })).json
+            .messages,
       },
       onValid: (text) => void this.replace(text, 'typed'),
       onEdit: () => this.#editListeners.forEach((listener) => listener()),
