@@ -1046,6 +1046,10 @@ metric: boolean,
  */
 nominal: number | null,
 /**
+ * Target of a metric; `null` without one.
+ */
+target: number | null,
+/**
  * Value in each point.
  */
 values: Curve, };

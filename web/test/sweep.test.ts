@@ -15,7 +15,7 @@ test('what is nearest is pointed at, and nothing beyond reach', () => {
 
 test('a point of a front is a design: the changes of its variables, and nothing of goals', () => {
   const axis = (name: string, nominal: number | null, values: number[]) => ({
-    ...{ name, unit: 'mm', metric: nominal === null, nominal },
+    ...{ name, unit: 'mm', metric: nominal === null, nominal, target: null },
     values: new Float32Array(values),
   })
   const axes = [axis('track', null, [0.5, 0.9]), axis('lca_y', 0, [0, -15]), axis('length', 300, [300, 310])]

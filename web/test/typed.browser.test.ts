@@ -34,6 +34,28 @@ const replaced = (text: string, part: string | RegExp, by: string) => {
   return other
 }
 
+test('the row of a parameter has its value, and counts from it, with its bounds', async () => {
+  const page = await open(models.four_bar_by_lengths)
+  const row = page.getByTestId('variable-ground')
+  const field = row.getByTestId('change-value')
+  expect(await field.inputValue()).toBe('400')
+  const type = async (text: string) => {
+    await field.fill(text)
+    await field.press('Enter')
+  }
+  await type('+2')
+  expect(await field.inputValue()).toBe('402')
+  await type('39 cm')
+  expect(await field.inputValue()).toBe('390')
+  await type('500')
+  expect(await field.inputValue()).toBe('450')
+  expect(await text(page, 'field-error')).toBe('The bound of ground is 450 mm.')
+  await row.getByTestId('limits').click()
+  expect(await row.getByTestId('bound-low').inputValue()).toBe('350')
+  await row.getByTestId('reset').click()
+  await expect.poll(() => field.inputValue()).toBe('400')
+})
+
 describe('a text that is typed', () => {
   test('with one output time that is not zero has plots around it', async () => {
     const page = await open(models.four_bar)

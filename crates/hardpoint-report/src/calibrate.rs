@@ -471,6 +471,7 @@ impl CalibrationInputs<'_> {
             unit: "1".into(),
             metric: false,
             nominal: None,
+            target: None,
             values: self.measured.lines.iter().map(|line| *line as f64).collect(),
         }];
         for (d, driver) in model.drivers.iter().enumerate() {
@@ -486,6 +487,7 @@ impl CalibrationInputs<'_> {
                     unit: symbol(units, quantity).into(),
                     metric: false,
                     nominal: None,
+                    target: None,
                     values,
                 },
             );
@@ -503,6 +505,7 @@ impl CalibrationInputs<'_> {
                 unit: self.unit_of(m),
                 metric: true,
                 nominal: None,
+                target: None,
                 values: values.into_iter().collect(),
             });
         }

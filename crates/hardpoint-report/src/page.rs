@@ -733,6 +733,8 @@ pub struct SweepAxis {
     pub metric: bool,
     /// Value of a design variable in the nominal design; `null` for all else.
     pub nominal: Option<f64>,
+    /// Target of a metric; `null` without one.
+    pub target: Option<f64>,
     /// Value in each point.
     pub values: Curve,
 }

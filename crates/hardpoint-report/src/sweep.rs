@@ -439,6 +439,7 @@ fn plot(facts: &SweepFacts, drawn: PlottedDesigns) -> SweepPlot {
         unit: v.unit.clone(),
         metric: false,
         nominal: Some(v.start),
+        target: None,
         values: values.into_iter().collect(),
     };
     let metric = |(m, values): (&SweptFact, Vec<f64>)| SweepAxis {
@@ -446,6 +447,7 @@ fn plot(facts: &SweepFacts, drawn: PlottedDesigns) -> SweepPlot {
         unit: m.unit.clone(),
         metric: true,
         nominal: None,
+        target: None,
         values: values.into_iter().collect(),
     };
     let first = facts.variables.len();

@@ -528,21 +528,32 @@ impl TradeOffFacts {
         write_rows(out, &columns, &self.points)
     }
 
-    /// Plot of the front: the goals first, over which it opens, then the variables.
+    /// Plot of the front: the goals first, over which it opens, then the variables. Of a goal with a target it shows the
+    /// metric instead of the distance, unless it has several cases.
     fn plot(&self) -> SweepPlot {
-        let goal = |(k, g): (usize, &TradedGoal)| SweepAxis {
-            name: g.name.clone(),
-            unit: g.unit.clone(),
-            // The first goal is the abscissa.
-            metric: k > 0,
-            nominal: None,
-            values: self.points.iter().map(|p| p.goals[k]).collect(),
+        let metric_of = |g: &TradedGoal, p: &PointFact| {
+            let mut own = p.metrics.iter().filter(|m| m.name == g.metric);
+            let value = own.next().map(|m| m.value);
+            value.filter(|_| g.target.is_some() && own.next().is_none())
+        };
+        let goal = |(k, g): (usize, &TradedGoal)| {
+            let metric: Option<Vec<f64>> = self.points.iter().map(|p| metric_of(g, p)).collect();
+            SweepAxis {
+                name: if metric.is_some() { g.metric.clone() } else { g.name.clone() },
+                unit: g.unit.clone(),
+                // The first goal is the abscissa.
+                metric: k > 0,
+                nominal: None,
+                target: g.target.filter(|_| metric.is_some()),
+                values: metric.unwrap_or_else(|| self.points.iter().map(|p| p.goals[k]).collect()).into_iter().collect(),
+            }
         };
         let variable = |(k, v): (usize, &TradedVariable)| SweepAxis {
             name: v.name.clone(),
             unit: v.unit.clone(),
             metric: false,
             nominal: Some(v.nominal),
+            target: None,
             values: self.points.iter().map(|p| p.variables[k]).collect(),
         };
         let goals = self.goals.iter().enumerate().map(goal);

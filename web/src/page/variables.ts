@@ -3,6 +3,7 @@ import { effects, type Effect } from '../effect'
 import { figure, pretty, roundBelow, signed } from '../format'
 import { derivativeUnit, orderedName, type Variable } from '../report'
 import type { State } from '../state'
+import { parameterValues } from '../studio/goal'
 import { badge, limited } from '../variables'
 import { NumberField } from './number_field'
 import { reach } from './reach'
@@ -50,7 +51,8 @@ export function variables(state: State, limits?: VariableLimits): HTMLElement {
   const shortfall = el('span', { class: 'shortfall', role: 'status', 'data-testid': 'shortfall' })
   const description = el('span', { 'aria-live': 'polite' })
   const note = el('p', { class: 'note', 'data-testid': 'variable-note' }, shortfall, description)
-  const rows = report.variables.map((variable) => row(state, variable, limits))
+  const values = parameterValues(report.model?.text ?? '')
+  const rows = report.variables.map((variable) => row(state, variable, values.get(variable.name), limits))
   let order = rows
 
   const filter = () => {
@@ -138,7 +140,8 @@ function bringIntoView(list: HTMLElement, { offsetTop: top, offsetHeight: height
   }
 }
 
-function row(state: State, variable: Variable, limits: VariableLimits | undefined): Row {
+/** A row of a variable; one with a `nominal` value is a parameter, of which the fields have values instead of changes. */
+function row(state: State, variable: Variable, nominal: number | undefined, limits: VariableLimits | undefined): Row {
   const { index, name, unit, admissibility } = variable
   const able = admissibility !== 'cannot_follow'
   const [low, high] = able ? reach(state.report, variable) : [0, 0]
@@ -161,8 +164,8 @@ function row(state: State, variable: Variable, limits: VariableLimits | undefine
     shown = ''
     state.change(index, by)
   }
-  const { slider, field, reset } = rowControls(change, variable, [low, high], step)
-  const bounded = able && limits ? limitControls(variable, [low, high], limits) : undefined
+  const { slider, field, reset } = rowControls(change, variable, nominal, [low, high], step)
+  const bounded = able && limits ? limitControls(variable, nominal ?? 0, [low, high], limits) : undefined
   const bar = el('span', { class: 'bar-of', 'aria-hidden': 'true' })
   const size = el('span', { class: 'size' })
   const effect = el('span', { class: 'effect', 'data-testid': 'effect' }, bar, size)
@@ -205,8 +208,8 @@ function row(state: State, variable: Variable, limits: VariableLimits | undefine
       slider.tabIndex = field.input.tabIndex = reset.tabIndex = chosen ? 0 : -1
       widen(slider, by, step)
       if (Number(slider.value) !== by) slider.value = String(by)
-      field.show(Number(by.toFixed(Math.max(digits, 3))))
-      slider.setAttribute('aria-valuetext', figure(by, unit))
+      field.show(added(nominal, Number(by.toFixed(Math.max(digits, 3)))))
+      slider.setAttribute('aria-valuetext', figure(added(nominal, by), unit))
       reset.classList.toggle('away', by === 0)
       element.classList.toggle('changed', by !== 0)
       shown = key
@@ -228,8 +231,15 @@ function widen(slider: HTMLInputElement, value: number, step: number): void {
 }
 
 /** Slider and field for the change of a variable, and the button that resets it. */
-function rowControls(change: (by: number) => void, variable: Variable, [low, high]: [number, number], step: number) {
+function rowControls(
+  change: (by: number) => void,
+  variable: Variable,
+  nominal: number | undefined,
+  [low, high]: [number, number],
+  step: number,
+) {
   const { name, unit } = variable
+  const what = nominal === undefined ? 'change' : 'value'
   let pending: number | undefined
   const changeSoon = (by: number) => {
     // A slider reports more often than a frame can be drawn.
@@ -248,20 +258,21 @@ function rowControls(change: (by: number) => void, variable: Variable, [low, hig
     step,
     value: 0,
     'data-testid': 'change',
-    'aria-label': `change of ${name}`,
+    'aria-label': `${what} of ${name}`,
     oninput: () => changeSoon(Number(slider.value)),
   })
   const field = new NumberField({
-    label: `change of ${name} in ${pretty(unit) || 'its unit'}`,
+    label: `${what} of ${name} in ${pretty(unit) || 'its unit'}`,
     testId: 'change-value',
     unit,
     step: step || 1,
-    plus: 'sign',
-    apply: (by) => {
+    plus: nominal === undefined ? 'sign' : 'adds',
+    apply: (typed) => {
+      const by = added(typed, -(nominal ?? 0))
       const kept = limited(by, variable.bounds)
       change(kept)
-      field.show(kept)
-      return kept === by ? undefined : `The bound of \`${name}\` is ${figure(kept, unit)}.`
+      field.show(added(nominal, kept))
+      return kept === by ? undefined : `The bound of \`${name}\` is ${figure(added(nominal, kept), unit)}.`
     },
   })
   const reset = el(
@@ -279,11 +290,21 @@ function rowControls(change: (by: number) => void, variable: Variable, [low, hig
   return { slider, field, reset }
 }
 
+/** Sum with as few digits as its parts. */
+function added(a = 0, b: number): number {
+  return Number((a + b).toPrecision(12))
+}
+
 /** Fields for the bounds and the tolerance of a variable, below its row, and the button that opens them. */
-function limitControls(variable: Variable, [low, high]: [number, number], { setBounds, setTolerance }: VariableLimits) {
+function limitControls(
+  variable: Variable,
+  nominal: number,
+  [low, high]: [number, number],
+  { setBounds, setTolerance }: VariableLimits,
+) {
   const { name, unit, bounds, tolerance } = variable
   const step = high > low ? roundBelow((high - low) / (2 * STEPS)) : 1
-  const ends = [bounds?.[0] ?? undefined, bounds?.[1] ?? undefined]
+  const ends = [0, 1].map((k) => (bounds?.[k] == null ? undefined : added(nominal, bounds[k])))
   const field = (
     label: string,
     testId: string,
@@ -299,7 +320,9 @@ function limitControls(variable: Variable, [low, high]: [number, number], { setB
     ends[k] = x
     const [a, b] = ends
     if (a === undefined || b === undefined) return `Enter the ${a === undefined ? 'lower' : 'upper'} bound as well.`
-    return a < b ? setBounds(name, [a, b]) : `The lower bound of \`${name}\` is not below its upper bound.`
+    return a < b
+      ? setBounds(name, [added(a, -nominal), added(b, -nominal)])
+      : `The lower bound of \`${name}\` is not below its upper bound.`
   }
   const label = (text: string, input: HTMLElement) => el('label', {}, el('span', { class: 'muted' }, text), input)
   const fields = el('div', { class: 'limit-fields', hidden: true })

@@ -127,6 +127,17 @@ export function toleranceToml(text: string, variable: string, tolerance: number)
   return setKey(text, ['tolerance', 'variables'], variable, String(tolerance))
 }
 
+/** Nominal values of the parameters in a model's text that are numbers, by name. */
+export function parameterValues(text: string): ReadonlyMap<string, number> {
+  const names = outline(text).flatMap(({ path: [group, name] }) => (group === 'parameters' && name ? [name] : []))
+  return new Map(
+    [...new Set(names)].flatMap((name): [string, number][] => {
+      const entry = entryOf(text, name)
+      return entry?.table[0] === 'parameters' ? [[name, entry.nominal]] : []
+    }),
+  )
+}
+
 /** Nominal value of a design variable in a model's text: that of a parameter; 0 for all others, which are changes. */
 export function nominalOf(text: string, variable: string): number {
   return entryOf(text, variable)?.nominal ?? 0

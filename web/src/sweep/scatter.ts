@@ -133,6 +133,10 @@ class Scatter {
     const dots = this.#points
       .map((k) => `M${x.at(over.values[k]).toFixed(1)},${y.at(of.values[k]).toFixed(1)}h0`)
       .join('')
+    const targets = [
+      ...(over.target === null ? [] : [line(x.at(over.target), MARGIN.top, x.at(over.target), bottom)]),
+      ...(of.target === null ? [] : [line(MARGIN.left, y.at(of.target), right, y.at(of.target))]),
+    ]
     const box = { x: MARGIN.left, y: MARGIN.top, width: right - MARGIN.left, height: bottom - MARGIN.top }
     this.#picture.setAttribute('viewBox', `0 0 ${width} ${height}`)
     this.#picture.setAttribute('width', String(width))
@@ -140,6 +144,7 @@ class Scatter {
     this.#picture.setAttribute('aria-label', `${titled(of.name, of.unit)} over ${titled(over.name, over.unit)}`)
     this.#picture.replaceChildren(
       svg('rect', { ...box, class: 'frame' }),
+      ...targets,
       svg('path', { class: this.#points.length < FEW ? 'points few' : 'points', d: dots }),
       ...x.ticks.map(({ value, text }) => label(text, x.at(value), bottom + 16, 'middle')),
       ...y.ticks.map(({ value, text }) => label(text, MARGIN.left - 6, y.at(value) + 4, 'end')),
@@ -163,8 +168,8 @@ class Scatter {
       svg('circle', { class: 'pointed', cx: this.#axes.x.at(over.values[k]), cy: this.#axes.y.at(of.values[k]), r: 6 }),
     )
     const all = this.sweep.axes.map(
-      ({ name, unit, values }) =>
-        `${name} ${Number.isFinite(values[k]) ? figure(Number(values[k].toPrecision(5)), unit) : 'no value'}`,
+      ({ name, unit, target, values }) =>
+        `${name} ${Number.isFinite(values[k]) ? figure(Number(values[k].toPrecision(5)), unit) : 'no value'}${target === null ? '' : ` (target ${figure(target, unit)})`}`,
     )
     this.#reading.textContent = `${this.sweep.what} ${k * this.sweep.step}: ${all.join(', ')}`
   }
@@ -230,9 +235,14 @@ class Scatter {
   }
 }
 
-/** From the least to the greatest value. */
-function ends({ values }: SweepAxis): [number, number] {
-  return extent([values]) ?? [0, 1]
+/** From the least to the greatest value, with the target. */
+function ends({ values, target }: SweepAxis): [number, number] {
+  return extent(target === null ? [values] : [values, Float32Array.of(target)]) ?? [0, 1]
+}
+
+/** Line at a target. */
+function line(x1: number, y1: number, x2: number, y2: number): SVGElement {
+  return svg('line', { class: 'target', 'data-testid': 'sweep-target', x1, y1, x2, y2 })
 }
 
 function label(text: string, x: number, y: number, anchor: string): SVGElement {
