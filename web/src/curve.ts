@@ -78,8 +78,17 @@ const WITH_IT = 0.1
  * `x`.
  */
 export function slope(y: readonly [Curve, Curve, Curve], x: readonly [Curve, Curve, Curve]): Curve {
+  const at = slopeAt(y, x)
+  return Float32Array.from(x[0], (_, k) => at(k))
+}
+
+/** The same at single steps. */
+export function slopeAt(
+  y: readonly [Curve, Curve, Curve],
+  x: readonly [Curve, Curve, Curve],
+): (step: number) => number {
   const [fastest, steepest, liveliest] = [peak(x[1]), peak(x[2]), peak(y[1])]
-  return Float32Array.from(x[0], (_, k) => {
+  return (k) => {
     if (Math.abs(x[1][k]) <= fastest * TURNS) {
       return Math.abs(x[2][k]) > steepest * TURNS && Math.abs(y[1][k]) <= liveliest * TURNS ? y[2][k] / x[2][k] : NaN
     }
@@ -87,7 +96,7 @@ export function slope(y: readonly [Curve, Curve, Curve], x: readonly [Curve, Cur
     const left = y[1][k] - (y[2][k] * x[1][k]) / x[2][k]
     const goesOn = Math.abs(x[1][k]) < fastest * TURNING && Math.abs(left) > liveliest * WITH_IT
     return goesOn ? NaN : y[1][k] / x[1][k]
-  })
+  }
 }
 
 /**

@@ -1,4 +1,4 @@
-import { courseRange, slope, slopeAlone, stepAt } from '../curve'
+import { courseRange, slopeAt, slopeAlone, stepAt } from '../curve'
 import { el, setText } from '../dom'
 import { number, per, pretty, signed } from '../format'
 import { aboutQuantity } from '../glossary'
@@ -155,7 +155,7 @@ function slopeText(state: State, index: number, time: number, unit: string): str
   if (hasOneFreedom(report)) {
     const orders = (quantity: number) => [0, 1, 2].map((order) => state.curve(quantity, order as 0))
     const [y, x] = [orders(index), orders(over)]
-    if (y[1].length > 0 && y[2].length > 0) value = slope([y[0], y[1], y[2]], [x[0], x[1], x[2]])[step]
+    if (y[1].length > 0 && y[2].length > 0) value = slopeAt([y[0], y[1], y[2]], [x[0], x[1], x[2]])(step)
   } else if (state.outdated === undefined) {
     const alone = moverOf(sensitivityReport, over)?.alone
     if (alone?.[index]?.length && alone[over]?.length) value = slopeAlone(alone[index], alone[over])[step]

@@ -1,4 +1,4 @@
-import { type Camera, Vector3 } from 'three'
+import { type Camera, type Quaternion, Vector3 } from 'three'
 import { el, svg } from '../dom'
 import type { AxisLook, Look } from './camera'
 import type { Mechanism } from './mechanism'
@@ -28,6 +28,8 @@ interface Direction {
  */
 export class Triad {
   readonly element: HTMLElement
+  /** Orientation of the camera that it shows. */
+  #drawn?: Quaternion
   #axes: (Direction & { line: SVGLineElement; rest: SVGCircleElement; text: SVGTextElement; ends: HTMLElement[] })[]
 
   /** `looks` are the views from both ends of each axis; `take` shows one. */
@@ -60,6 +62,8 @@ export class Triad {
   }
 
   update(camera: Camera): void {
+    if (this.#drawn?.equals(camera.quaternion)) return
+    this.#drawn = camera.quaternion.clone()
     const inverse = camera.quaternion.clone().invert()
     for (const { unit, name, line, rest, text, ends } of this.#axes) {
       const seen = unit.clone().applyQuaternion(inverse)
