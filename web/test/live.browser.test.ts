@@ -345,7 +345,7 @@ async function openText(file: string): Promise<void> {
 }
 
 test.skipIf(!IMAGES)('a hardpoint in the hand is the picture of the studio', async () => {
-  visited = await visit(browser, models.macpherson, { viewport: { width: 1280, height: 800 } })
+  visited = await visit(browser, models.macpherson, { viewport: { width: 1280, height: 800 }, derived: true })
   page = visited.page
   await ready(page)
   await page.getByTestId('grips').click()

@@ -622,15 +622,18 @@ export class Studio {
 
   /** Names the motion that the page derived, with buttons for the model's own and for cases in its text. */
   #derivedNotice(): HTMLElement {
-    const words =
-      `Motion derived from the model: \`${this.model.case}\` moves alone, ` +
-      'all other drivers are fixed in the design configuration.'
     const button = (name: string, testId: string, title: string, onclick: () => void) =>
       el('button', { type: 'button', 'data-testid': testId, title, onclick }, name)
     return el(
       'p',
       { class: 'derived-motion', role: 'status', 'data-testid': 'derived-motion' },
-      el('span', {}, ...prose(words)),
+      el(
+        'span',
+        {},
+        ...prose(`Motion derived from the model: \`${this.model.case}\` moves alone`),
+        el('span', { class: 'detail' }, ', all other drivers are fixed in the design configuration'),
+        '.',
+      ),
       button('All drivers', 'own-motion', 'Show the motion of the model', () => this.#chooseMotion(null)),
       button('Write cases', 'write-cases', 'Write a case for each driver into the text of the model', () =>
         this.#writeCases(),
