@@ -125,6 +125,7 @@ describe('a hardpoint', () => {
     expect(await page.getByTestId('grips').getAttribute('aria-pressed')).toBe('false')
     await page.keyboard.press('m')
     expect(await page.getByTestId('grip-pane').isVisible()).toBe(true)
+    expect(await page.evaluate(() => document.activeElement!.className)).toContain('grip')
     await page.keyboard.press('Escape')
     expect(await page.getByTestId('grip-pane').isVisible()).toBe(false)
   })

@@ -134,6 +134,9 @@ export class Grips {
     if (!this.on) this.choose(undefined)
     this.#follow()
     this.#show()
+    // After the key M the arrow keys are of a hardpoint, without a way there by tabs.
+    if (this.on && [null, document.body, this.button].includes(document.activeElement as HTMLElement | null))
+      this.#shown.find(({ button }) => !button.hidden)?.button.focus({ preventScroll: true })
   }
 
   /** Ends the mode in which hardpoints are moved; false if it was not on. */
