@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use hardpoint::Solution;
-use hardpoint::model::{DesignVariable, Dimension, Metric, Model, Reduction};
+use hardpoint::model::{DesignVariable, Dimension, Metric, Model};
 use hardpoint::run::{MetricValue, metrics, metrics_beside};
 use hardpoint_file::Units;
 use hardpoint_study::whatif::WhatIf;
@@ -253,42 +253,12 @@ impl MetricChange {
 
 /// Direction in which a metric is positive; of a slope that of its measure, and none of a size.
 fn positive(model: &Model, metric: &Metric) -> String {
-    match metric.take {
-        Reduction::Range | Reduction::Rms(_) | Reduction::RmsAtPoints(_) => String::new(),
-        Reduction::Least
-        | Reduction::Greatest
-        | Reduction::Change
-        | Reduction::Mean
-        | Reduction::Integral
-        | Reduction::Value(_)
-        | Reduction::Slope(_) => model.positive(metric.of),
-    }
+    if metric.take.is_directed() { model.positive(metric.of) } else { String::new() }
 }
 
 /// Description of a metric: `slope of toe over wheel_travel at 0 mm`.
 pub(crate) fn what(model: &Model, units: Units, metric: &Metric) -> String {
-    let name = |output| model.output_name(output);
     let x = model.abscissa(metric);
-    let place = |at: f64| with_unit(units.from_si(x, at), &unit(units, x));
-    let over = metric.over.map_or("time".into(), name);
-    let of = name(metric.of);
-    let within = metric.window.map_or(String::new(), |[low, high]| {
-        format!(" where {over} is {} to {}", number(units.from_si(x, low)), place(high))
-    });
-    let mean_over = if metric.over.is_some() { format!(" over {over}") } else { String::new() };
-    match &metric.take {
-        Reduction::Least => format!("least {of}{within}"),
-        Reduction::Greatest => format!("greatest {of}{within}"),
-        Reduction::Range => format!("range of {of} (max - min){within}"),
-        Reduction::Change => format!("change of {of} from the first to the last output time"),
-        Reduction::Integral => format!("integral of {of} over {over}{within}"),
-        Reduction::Mean => format!("mean of {of}{mean_over}{within}"),
-        Reduction::Rms(target) if target.is_empty() => format!("root mean square of {of}{mean_over}{within}"),
-        Reduction::Rms(_) => format!("root mean square of {of} beyond its target{mean_over}{within}"),
-        Reduction::RmsAtPoints(_) => {
-            format!("root mean square of {of} beyond the points of its target{mean_over}{within}")
-        }
-        Reduction::Value(at) => format!("{of} where {over} is {}", place(*at)),
-        Reduction::Slope(at) => format!("slope of {of} over {over} at {}", place(*at)),
-    }
+    let at = |at: f64| units.from_si(x, at);
+    model.describe_metric(metric, &|place| number(at(place)), &|place| with_unit(at(place), &unit(units, x)))
 }

@@ -1,7 +1,7 @@
 //! Metrics: numbers of a measure's curve.
 
 use hardpoint::draft::{MetricDraft, Section};
-use hardpoint::model::Reduction;
+use hardpoint::model::{Reduction, ReductionArguments, ReductionKeys};
 
 use crate::values::{
     CASE, EntryPlace, Field, Fields, NUMBER, OUTPUT, Reader, Shape, TWO_NUMBERS, Table, table,
@@ -39,28 +39,7 @@ pub(super) const TARGET_FILE: Table = table! {
     /// The file's columns of abscissa and value, by name or by number from 1. Default: the first two.
     may "columns": Shape::exactly(2, &COLUMN), "[1, 2]";
 };
-const TAKE: Shape = Shape::Any(
-    "Take",
-    "What a metric takes.",
-    &[Shape::Words(&[
-        ("min", "The least value."),
-        ("max", "The greatest value."),
-        ("range", "The greatest less the least value."),
-        ("change", "The value at the last less that at the first output time."),
-        ("mean", "The mean over time, or over the travel of the abscissa to and fro."),
-        (
-            "integral",
-            "The integral over the abscissa: of a power over time the work in J, and of a force or a moment over its way or angle.",
-        ),
-        ("rms", "The root of the mean, as for `mean`, of the squared deviation from the target."),
-        (
-            "rms_at_points",
-            "The root mean square of the deviation from the target's points, each where the abscissa first has its value.",
-        ),
-        ("value", "The value where the abscissa first is `at`."),
-        ("slope", "The change per change of the abscissa where that first is `at`."),
-    ])],
-);
+const TAKE: Shape = Shape::Any("Take", "What a metric takes.", &[Shape::Words(Reduction::WORDS)]);
 
 pub(super) fn metrics(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
     for entry in r.entries(model, "metrics", "metric") {
@@ -92,41 +71,47 @@ pub(super) fn metrics(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
 
 /// Reduction of a metric, in the file's units.
 fn take(r: &mut Reader<'_>, fields: &Fields<'_>) -> Option<Reduction> {
-    let word = Reduction::NAMES[r.word_of(fields, "take")?];
-    if word != "rms" && word != "rms_at_points" {
-        let why = "only `take = \"rms\"` and `\"rms_at_points\"` compare with a target";
+    let kind = &Reduction::TYPES[r.word_of(fields, "take")?];
+    let [curve, points, place] = [ReductionKeys::Target, ReductionKeys::Points, ReductionKeys::Place];
+    if ![curve, points].contains(&kind.keys) {
+        let why = format!("only {} compare with a target", names(&[curve, points]));
         r.out_of_place(fields, "target", why);
     }
-    if word != "value" && word != "slope" {
-        r.out_of_place(fields, "at", "only `take = \"value\"` and `\"slope\"` are taken at one place");
-    } else {
-        r.out_of_place(fields, "window", "it is taken at one place");
-        r.need(fields, "at");
+    if kind.keys != place {
+        let why = format!("only {} are taken at one place", names(&[place]));
+        r.out_of_place(fields, "at", why);
     }
-    if word == "change" {
-        for key in ["window", "over"] {
-            r.out_of_place(fields, key, "a change is that from the first to the last output time");
+    let mut arguments = ReductionArguments::default();
+    match kind.keys {
+        ReductionKeys::Window => {}
+        ReductionKeys::Target => {
+            if let Some(f) = fields.get("target") {
+                arguments.target = target(r, fields, f)?;
+            }
         }
-    }
-    Some(match word {
-        "min" => Reduction::Least,
-        "max" => Reduction::Greatest,
-        "range" => Reduction::Range,
-        "change" => Reduction::Change,
-        "mean" => Reduction::Mean,
-        "integral" => Reduction::Integral,
-        "rms" => Reduction::Rms(match fields.get("target") {
-            Some(f) => target(r, fields, f)?,
-            None => Vec::new(),
-        }),
-        "rms_at_points" => {
+        ReductionKeys::Points => {
             let field = r.need(fields, "target")?;
-            Reduction::RmsAtPoints(target(r, fields, field)?)
+            arguments.target = target(r, fields, field)?;
         }
-        "value" => Reduction::Value(r.number_of(fields, "at")?),
-        "slope" => Reduction::Slope(r.number_of(fields, "at")?),
-        _ => unreachable!("`{word}` is not read"),
-    })
+        ReductionKeys::Place => {
+            r.out_of_place(fields, "window", "it is taken at one place");
+            r.need(fields, "at");
+            arguments.at = r.number_of(fields, "at")?;
+        }
+        ReductionKeys::Ends => {
+            for key in ["window", "over"] {
+                r.out_of_place(fields, key, "a change is that from the first to the last output time");
+            }
+        }
+    }
+    Some((kind.of)(arguments))
+}
+
+/// The reductions with these keys, as written: `take = "value"` and `"slope"`.
+fn names(keys: &[ReductionKeys]) -> String {
+    let all = Reduction::TYPES.iter().filter(|kind| keys.contains(&kind.keys));
+    let names: Vec<String> = all.map(|kind| format!("`\"{}\"`", kind.name)).collect();
+    names.join(" and ").replacen('`', "`take = ", 1)
 }
 
 /// Target curve of an `rms`, given here or in a file.

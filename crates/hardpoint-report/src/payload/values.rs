@@ -1,6 +1,6 @@
 //! Single values that characterise a design.
 
-use hardpoint::model::{Dimension, Driver, Metric, OutputSource, Reduction, VariableId};
+use hardpoint::model::{CurvePart, Dimension, Driver, Metric, OutputSource, VariableId};
 use hardpoint_table::series::settled;
 
 use crate::facts::VariableAdmissibility;
@@ -99,19 +99,15 @@ impl Compose<'_> {
 /// Limits of a curve from the limits of its metric: a maximum limits the whole curve from above, a minimum from below,
 /// and a value at a position limits it there. Other metrics, and those of a part of the curve, limit no point of it.
 fn gate(metric: &Metric, [low, high]: [Option<f64>; 2], time: Option<f64>) -> Option<Gate> {
-    let gate = match metric.take {
-        Reduction::Greatest if metric.window.is_none() => Gate { low: None, high, at: None },
-        Reduction::Least if metric.window.is_none() => Gate { low, high: None, at: None },
-        Reduction::Value(_) => Gate { low, high, at: Some(time?) },
-        Reduction::Greatest
-        | Reduction::Least
-        | Reduction::Range
-        | Reduction::Change
-        | Reduction::Mean
-        | Reduction::Integral
-        | Reduction::Rms(_)
-        | Reduction::RmsAtPoints(_)
-        | Reduction::Slope(_) => return None,
+    let gate = match metric.take.part() {
+        CurvePart::Extrema([1.0]) if metric.window.is_none() => Gate { low: None, high, at: None },
+        CurvePart::Extrema([-1.0]) if metric.window.is_none() => Gate { low, high: None, at: None },
+        CurvePart::Place { is_slope: false, .. } => Gate { low, high, at: Some(time?) },
+        CurvePart::Extrema(_)
+        | CurvePart::Ends
+        | CurvePart::Path(_)
+        | CurvePart::Place { .. }
+        | CurvePart::Points(_) => return None,
     };
     (gate.low.is_some() || gate.high.is_some()).then_some(gate)
 }

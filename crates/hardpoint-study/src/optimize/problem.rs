@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::evaluation::{DesignEvaluation, Motions, StudyCost};
-use hardpoint::model::{Limit, LimitTarget, Metric, Model, OptimizationSettings, Reduction, VariableId};
+use hardpoint::model::{Limit, LimitTarget, Metric, Model, OptimizationSettings, VariableId};
 use hardpoint::motion::StopKind;
 use hardpoint::number::Dual;
 use hardpoint::run::{MarginDerivatives, MetricParts, MetricUse, Solution, misfits, peaks};
@@ -284,7 +284,7 @@ impl<'m> Problem<'m> {
         // Of a value at a target, and of the range of a curve there, the derivative is enough.
         let has_candidates = |entry: &&MotionMetric| {
             let take = &motions.model(entry.motion).metrics[entry.metric].take;
-            settings.goals[entry.of].target.is_none() || sign_of_extremum(take).is_some()
+            settings.goals[entry.of].target.is_none() || take.extrema().len() == 1
         };
         let by_value = goals.iter().filter(|entry| !has_candidates(entry));
         let by_candidates = goals.iter().filter(has_candidates);
@@ -443,42 +443,25 @@ impl<'m> Problem<'m> {
         };
         let (model, solution) = (self.motions.model(entry.motion), &found.solutions[entry.motion]);
         let peaks = |sign: f64| parts(peaks(model, solution, metric, sign), sign);
-        match (&metric.take, goal.target) {
-            (Reduction::Rms(_) | Reduction::RmsAtPoints(_), _) => {
-                let Rows { values, d } = parts(misfits(model, solution, metric), 1.0);
-                point.misfits.values.extend(values);
-                point.misfits.d.extend(d);
+        let signs = if solution.motion.len() > 1 { metric.take.extrema() } else { &[] };
+        if metric.take.target().is_some() {
+            let Rows { values, d } = parts(misfits(model, solution, metric), 1.0);
+            point.misfits.values.extend(values);
+            point.misfits.d.extend(d);
+        } else if let Some(target) = goal.target {
+            let (x, row) = by(value - target, &d);
+            if let [sign] = signs {
+                let mut rows = peaks(*sign);
+                rows.values.iter_mut().for_each(|value| *value -= sign * goal.weight * target);
+                rows.push(-sign * x, row.iter().map(|d| -sign * d).collect());
+                point.extrema.push(Extremum { misfit: point.misfits.values.len(), rows });
             }
-            (take, Some(target)) => {
-                let (x, row) = by(value - target, &d);
-                if let Some(sign) = sign_of_extremum(take)
-                    && solution.motion.len() > 1
-                {
-                    let mut rows = peaks(sign);
-                    rows.values.iter_mut().for_each(|value| *value -= sign * goal.weight * target);
-                    rows.push(-sign * x, row.iter().map(|d| -sign * d).collect());
-                    point.extrema.push(Extremum { misfit: point.misfits.values.len(), rows });
-                }
-                point.misfits.push(x, row);
-            }
-            (Reduction::Greatest, None) if solution.motion.len() > 1 => point.peaks.push(peaks(1.0)),
-            (Reduction::Range, None) if solution.motion.len() > 1 => {
-                point.peaks.extend([peaks(1.0), peaks(-1.0)]);
-            }
-            (
-                Reduction::Least
-                | Reduction::Greatest
-                | Reduction::Range
-                | Reduction::Change
-                | Reduction::Mean
-                | Reduction::Integral
-                | Reduction::Value(_)
-                | Reduction::Slope(_),
-                None,
-            ) => {
-                let (x, d) = by(value, &d);
-                point.plain.push(x, d);
-            }
+            point.misfits.push(x, row);
+        } else if signs.contains(&1.0) {
+            point.peaks.extend(signs.iter().map(|sign| peaks(*sign)));
+        } else {
+            let (x, d) = by(value, &d);
+            point.plain.push(x, d);
         }
         self.finite(entry.motion, &metric.name, point)
     }
@@ -508,14 +491,14 @@ impl<'m> Problem<'m> {
             return Ok(());
         }
         // The time of a maximum varies with the design, so all candidates are kept within the limit.
-        let parts = |settings: Reduction, sign: f64| {
+        let parts = |extrema: &[f64], sign: f64| {
             let entry = entry?;
             let (model, solution) = (self.motions.model(entry.motion), &found.solutions[entry.motion]);
             let metric = &model.metrics[entry.metric];
-            let has = metric.take == settings && solution.motion.len() > 1;
+            let has = metric.take.extrema() == extrema && solution.motion.len() > 1;
             if has { peaks(model, solution, metric, sign) } else { None }
         };
-        let all = |sign: f64| parts(if sign > 0.0 { Reduction::Greatest } else { Reduction::Least }, sign);
+        let all = |sign: f64| parts(&[sign], sign);
         for (end, sign) in [(settings.most, 1.0), (settings.least, -1.0)] {
             let Some(end) = end else { continue };
             match all(sign) {
@@ -532,7 +515,7 @@ impl<'m> Problem<'m> {
                 }
             }
         }
-        let ends = parts(Reduction::Range, 1.0).zip(parts(Reduction::Range, -1.0));
+        let ends = parts(&[1.0, -1.0], 1.0).zip(parts(&[1.0, -1.0], -1.0));
         if let (Some(most), Some((high, low))) = (settings.most, ends) {
             let rows = |parts: MetricParts, sign: f64| Rows {
                 values: parts.values.iter().map(|x| sign * x).collect(),
@@ -591,28 +574,12 @@ impl<'m> Problem<'m> {
     }
 }
 
-/// 1 for the maximum of a curve, -1 for its minimum.
-fn sign_of_extremum(take: &Reduction) -> Option<f64> {
-    match take {
-        Reduction::Greatest => Some(1.0),
-        Reduction::Least => Some(-1.0),
-        Reduction::Value(_)
-        | Reduction::Slope(_)
-        | Reduction::Change
-        | Reduction::Mean
-        | Reduction::Integral
-        | Reduction::Range
-        | Reduction::Rms(_)
-        | Reduction::RmsAtPoints(_) => None,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::test_models::crank_rocker;
     use hardpoint::law::Law;
-    use hardpoint::model::{CaseId, Goal, HardpointId, JointId, Metric, OutputSource, PointId};
+    use hardpoint::model::{CaseId, Goal, HardpointId, JointId, Metric, OutputSource, PointId, Reduction};
     use hardpoint::topology::Formulation;
 
     /// Step of central differences, as a fraction of the bounds. For a smooth function they are accurate to this

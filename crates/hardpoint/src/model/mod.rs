@@ -46,7 +46,10 @@ pub use measure::{
 pub(crate) use measure::{UnitForce, loads, measures, of_bodies, of_bodies_but_joints};
 pub use measured::{Measurements, Reading};
 pub(crate) use metric::on_target;
-pub use metric::{Metric, Reduction};
+pub use metric::{
+    CurvePart, Metric, PathIntegral, Reduction, ReductionArguments, ReductionKeys, ReductionType,
+    ReductionUnit,
+};
 pub use optimization::{Goal, Limit, LimitTarget, OptimizationSettings};
 pub use page::{NamedDesign, Plot};
 pub use placement::StartPlacement;

@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use crate::law::Law;
 use crate::linalg::{hermite, segment_at};
-use crate::model::{Metric, Model, OutputSource, Reduction};
+use crate::model::{CurvePart, Metric, Model, OutputSource};
 use crate::motion::StopKind;
 use crate::motion::mechanism::driver_units;
 
@@ -45,15 +45,10 @@ const BYTES: usize = 128 << 20;
 
 /// Returns true if a metric may depend on the curve between the output times.
 fn is_between_outputs(metric: &Metric, times: &[f64]) -> bool {
-    match metric.take {
-        Reduction::Least
-        | Reduction::Greatest
-        | Reduction::Range
-        | Reduction::Mean
-        | Reduction::Integral
-        | Reduction::Rms(_) => true,
-        Reduction::Change => false,
-        Reduction::Value(_) | Reduction::Slope(_) | Reduction::RmsAtPoints(_) => {
+    match metric.take.part() {
+        CurvePart::Extrema(_) | CurvePart::Path(_) => true,
+        CurvePart::Ends => false,
+        CurvePart::Place { .. } | CurvePart::Points(_) => {
             metric.over.is_some() || !window_times(metric).iter().all(|t| times.contains(t))
         }
     }

@@ -16,7 +16,7 @@ use crate::space::Vec3;
 
 use super::curve::SampledCurve;
 use super::joint_limits::MovingEnd;
-use super::metric::{reaches, signs};
+use super::metric::reaches;
 use super::{Analysis, Run, Solution};
 
 /// A minimum or contact is located if a step of Newton's method is below this fraction of the motion: positions are
@@ -360,7 +360,7 @@ impl Analysis<'_> {
         let mut found = Vec::new();
         for metric in &model.metrics {
             let direct = clearance_of(model, metric.of);
-            let signs: &[f64] = match signs(&metric.take) {
+            let signs: &[f64] = match metric.take.extrema() {
                 [] => continue,
                 [-1.0] if direct.is_some() && is_locatable(metric) => continue,
                 signs if direct.is_some() => signs,

@@ -7,10 +7,10 @@ use super::curve::{
     AT_CORNER, CornerEstimate, SampledCurve, THERE, Vertex, WidePolynomial, abscissa_at, along, apart,
     crossings, unknown_change,
 };
-use super::quadrature::{PathIntegral, coarse_middles, path_error, path_nodes, travel};
+use super::quadrature::{coarse_middles, path_error, path_nodes, travel};
 use super::solution::Solution;
 use crate::measure::{MeasureResults, Output};
-use crate::model::{Metric, Model, OutputSource, Reduction, VariableId, on_target};
+use crate::model::{CurvePart, Metric, Model, OutputSource, Reduction, ReductionUnit, VariableId, on_target};
 use crate::motion::{Stop, StopKind};
 use crate::number::{Dual, Real};
 
@@ -42,28 +42,14 @@ pub fn metrics(model: &Model, solution: &Solution) -> Vec<MetricValue> {
 pub fn metrics_beside(model: &Model, today: &Solution, other: &Solution) -> Vec<Option<f64>> {
     let whole = other.motion.len() >= today.motion.len();
     let values = model.metrics.iter().zip(metrics(model, other));
-    values.map(|(metric, found)| found.value.filter(|_| whole || is_local(metric))).collect()
-}
-
-/// True if a metric is taken at a position, not of the whole curve.
-fn is_local(metric: &Metric) -> bool {
-    match metric.take {
-        Reduction::Value(_) | Reduction::Slope(_) | Reduction::RmsAtPoints(_) => true,
-        Reduction::Least
-        | Reduction::Greatest
-        | Reduction::Range
-        | Reduction::Change
-        | Reduction::Mean
-        | Reduction::Integral
-        | Reduction::Rms(_) => false,
-    }
+    values.map(|(metric, found)| found.value.filter(|_| whole || metric.take.is_local())).collect()
 }
 
 /// True if a metric is known of a solution: one of the whole curve is not if the motion ended early, unless an end stop
 /// ended it.
 fn is_known(metric: &Metric, solution: &Solution) -> bool {
     let is_ended = |stop: &Stop| !matches!(stop.kind, StopKind::JointLimit { .. });
-    is_local(metric) || !solution.stop.as_ref().is_some_and(is_ended)
+    metric.take.is_local() || !solution.stop.as_ref().is_some_and(is_ended)
 }
 
 /// Returns the values of all metrics without derivatives, times and errors.
@@ -122,31 +108,24 @@ fn metric_value(model: &Model, solution: &Solution, metric: &Metric) -> MetricVa
     // If the motion was solved between output times, the metric is taken at a solved time. Integrals are not, nor is an
     // extremum between times without rates.
     let is_located = is_among(&solution.located, metric);
-    let hidden = match metric.take {
-        Reduction::Mean | Reduction::Integral | Reduction::Rms(_) => true,
-        Reduction::Least | Reduction::Greatest | Reduction::Range => y.orders == 1 && !is_located,
-        Reduction::Change | Reduction::RmsAtPoints(_) | Reduction::Value(_) | Reduction::Slope(_) => false,
+    let hidden = match metric.take.part() {
+        CurvePart::Path(_) => true,
+        CurvePart::Extrema(_) => y.orders == 1 && !is_located,
+        CurvePart::Ends | CurvePart::Place { .. } | CurvePart::Points(_) => false,
     };
     let resolved = !hidden
         && unresolved_extrema(solution_of(solution), metric).is_empty()
         && unresolved_corners(solution_of(solution), metric).is_empty()
         && (solution.between.is_some() || is_located)
         && unresolved_times(solution_of(solution), metric, true).is_empty();
-    let range = match metric.take {
-        Reduction::Slope(_) => value.abs(),
-        Reduction::Integral => range_of(&y) * travel(metric, &y, &x),
-        Reduction::Least
-        | Reduction::Greatest
-        | Reduction::Range
-        | Reduction::Change
-        | Reduction::Mean
-        | Reduction::Rms(_)
-        | Reduction::RmsAtPoints(_)
-        | Reduction::Value(_) => range_of(&y),
+    let range = match metric.take.unit() {
+        ReductionUnit::Output => range_of(&y),
+        ReductionUnit::OutputTimesAbscissa => range_of(&y) * travel(metric, &y, &x),
+        ReductionUnit::OutputPerAbscissa => value.abs(),
     };
     let error = if resolved { None } else { interpolation_error(metric, &y, &x, value, time) };
     // Next to a kink that is not located, polynomials of several intervals are off by far more than the curve changes.
-    let is_extremum = !signs(&metric.take).is_empty();
+    let is_extremum = !metric.take.extrema().is_empty();
     let error = error.map(|error| if is_extremum { error.min(range) } else { error });
     MetricValue {
         value: Some(value),
@@ -178,34 +157,7 @@ pub(crate) fn window_times(metric: &Metric) -> Vec<f64> {
     if metric.over.is_some() {
         return Vec::new();
     }
-    let at = match &metric.take {
-        Reduction::Value(at) | Reduction::Slope(at) => vec![*at],
-        Reduction::RmsAtPoints(points) => points.iter().map(|p| p[0]).collect(),
-        Reduction::Least
-        | Reduction::Greatest
-        | Reduction::Range
-        | Reduction::Change
-        | Reduction::Mean
-        | Reduction::Integral
-        | Reduction::Rms(_) => Vec::new(),
-    };
-    metric.window.into_iter().flatten().chain(at).collect()
-}
-
-/// Signs of the extrema that a metric is taken of: 1 for a maximum, -1 for a minimum.
-pub(super) fn signs(take: &Reduction) -> &'static [f64] {
-    match take {
-        Reduction::Greatest => &[1.0],
-        Reduction::Least => &[-1.0],
-        Reduction::Range => &[1.0, -1.0],
-        Reduction::Change
-        | Reduction::Mean
-        | Reduction::Integral
-        | Reduction::Rms(_)
-        | Reduction::RmsAtPoints(_)
-        | Reduction::Value(_)
-        | Reduction::Slope(_) => &[],
-    }
+    metric.window.into_iter().flatten().chain(metric.take.places()).collect()
 }
 
 /// Times that a metric needs in addition to those of a solution: times at which it is taken by inaccurate
@@ -214,27 +166,23 @@ pub(super) fn signs(take: &Reduction) -> &'static [f64] {
 pub(crate) fn unresolved_times(solution: &Solution, metric: &Metric, finer: bool) -> Vec<f64> {
     let Some((y, x)) = curves_at(solution, metric) else { return Vec::new() };
     let range = range_of(&y);
-    let located: Vec<_> = match &metric.take {
-        Reduction::Greatest | Reduction::Least | Reduction::Range => {
-            let signs = signs(&metric.take);
+    let located: Vec<_> = match metric.take.part() {
+        CurvePart::Extrema(signs) => {
             signs.iter().flat_map(|sign| far_out_times(metric, &y, &x, *sign, finer)).collect()
         }
         // It is taken at output times.
-        Reduction::Change => return Vec::new(),
-        Reduction::Value(at) | Reduction::Slope(at) => {
-            crossings(&y, &x, *at).map(|(_, t)| t).take(1).collect()
-        }
-        Reduction::RmsAtPoints(points) => {
+        CurvePart::Ends => return Vec::new(),
+        CurvePart::Place { at, .. } => crossings(&y, &x, at).map(|(_, t)| t).take(1).collect(),
+        CurvePart::Points(points) => {
             let counting = points.iter().filter(|p| within_window(metric, p[0]));
             counting.filter_map(|p| crossings(&y, &x, p[0]).next()).map(|(k, t)| y.within(k, t)).collect()
         }
-        Reduction::Mean | Reduction::Integral | Reduction::Rms(_) => {
+        CurvePart::Path(_) => {
             return coarse_middles(metric, &y, &x, RESOLVED_BY_OUTPUTS * range);
         }
     };
     let part = if finer { RESOLVED } else { RESOLVED_BY_OUTPUTS };
-    let is_at_abscissa =
-        matches!(metric.take, Reduction::Value(_) | Reduction::Slope(_) | Reduction::RmsAtPoints(_));
+    let is_at_abscissa = metric.take.is_local();
     let unresolved = |time: &f64| {
         if y.times.contains(time) {
             return false;
@@ -259,7 +207,7 @@ pub(crate) fn unresolved_times(solution: &Solution, metric: &Metric, finer: bool
 /// Times that an extremum of a curve without rates needs in addition: at and beside those whose parabolas are
 /// inaccurate.
 pub(crate) fn unresolved_extrema(solution: &Solution, metric: &Metric) -> Vec<f64> {
-    let signs = signs(&metric.take);
+    let signs = metric.take.extrema();
     let has_rates = column(&solution.measured, metric.of).is_some_and(|(_, orders, _)| orders > 1);
     if signs.is_empty() || has_rates {
         return Vec::new();
@@ -271,7 +219,7 @@ pub(crate) fn unresolved_extrema(solution: &Solution, metric: &Metric) -> Vec<f6
 
 /// Times that an extremum of a curve with rates needs in addition where it is a kink: times between which the kink is.
 pub(crate) fn unresolved_corners(solution: &Solution, metric: &Metric) -> Vec<f64> {
-    let signs = signs(&metric.take);
+    let signs = metric.take.extrema();
     let has_rates = column(&solution.measured, metric.of).is_some_and(|(_, orders, _)| orders > 1);
     if signs.is_empty() || !has_rates {
         return Vec::new();
@@ -371,7 +319,7 @@ const BESIDE: f64 = 1e-4;
 /// Times beside one at which a metric is taken over a measure, if there are no rates: at an equilibrium. The derivative
 /// at constant abscissa depends on the slope there.
 fn beside(metric: &Metric, y: &SampledCurve<'_, f64>, t: f64) -> Vec<f64> {
-    let is_slope = matches!(metric.take, Reduction::Slope(_));
+    let is_slope = metric.take.unit() == ReductionUnit::OutputPerAbscissa;
     if y.orders > 1 || metric.over.is_none() || is_slope {
         return Vec::new();
     }
@@ -435,22 +383,17 @@ pub(super) fn derivative_times(solution: &Solution, metric: &Metric) -> Option<V
             (first.saturating_sub(1)..=after).collect()
         })
     };
-    match metric.take {
-        Reduction::Change => Some(vec![0, solution.motion.len().saturating_sub(1)]),
-        Reduction::Value(at) if solution.motion.len() > 1 => {
+    match metric.take.part() {
+        CurvePart::Ends => Some(vec![0, solution.motion.len().saturating_sub(1)]),
+        CurvePart::Place { at, is_slope: false } if solution.motion.len() > 1 => {
             let crossing = curves_at(solution, metric).and_then(|(y, x)| crossings(&y, &x, at).next());
             Some(crossing.map_or(Vec::new(), |(k, _)| vec![k, k + 1]))
         }
-        Reduction::Greatest | Reduction::Least | Reduction::Range => {
-            let times: Option<Vec<_>> = signs(&metric.take).iter().map(|sign| of_extremum(*sign)).collect();
+        CurvePart::Extrema(signs) => {
+            let times: Option<Vec<_>> = signs.iter().map(|sign| of_extremum(*sign)).collect();
             Some(times?.concat())
         }
-        Reduction::Value(_)
-        | Reduction::Slope(_)
-        | Reduction::Mean
-        | Reduction::Integral
-        | Reduction::Rms(_)
-        | Reduction::RmsAtPoints(_) => None,
+        CurvePart::Place { .. } | CurvePart::Path(_) | CurvePart::Points(_) => None,
     }
 }
 
@@ -493,7 +436,7 @@ fn times_and_rows<'s>(solution: &'s Solution, metric: &Metric) -> (&'s [f64], Ve
     let Solution { motion, measured, unlocated, .. } = solution;
     let has_rates = |output| column(measured, output).is_none_or(|(_, orders, _)| orders > 1);
     let has_lines = [Some(metric.of), metric.over].into_iter().flatten().any(|output| !has_rates(output));
-    if unlocated.is_empty() || !has_lines || PathIntegral::of(&metric.take).is_none() {
+    if unlocated.is_empty() || !has_lines || metric.take.integral().is_none() {
         return (&motion.times, (0..measured.len()).collect());
     }
     let row = |time: &f64| motion.times.binary_search_by(|t| t.total_cmp(time)).ok();
@@ -567,32 +510,22 @@ impl MetricParts {
 /// r_g = sqrt(abs(dx_g) / sum abs(dx_g)) (y_g - target(x_g)),        r_p = sqrt(1 / points) (y(x_p) - y_p)
 /// ```
 pub fn misfits(model: &Model, solution: &Solution, metric: &Metric) -> Option<MetricParts> {
-    metric.take.target()?;
+    let target = metric.take.target()?;
     curves(solution, metric).and_then(|(y, x)| take(metric, &y, &x))?;
-    fn parts<T: Real>((y, x): &Curves<'_, T>, metric: &Metric) -> Vec<T> {
-        match &metric.take {
-            Reduction::Rms(target) => {
-                let travel = travel(metric, y, x);
-                // The root has no derivative if the abscissa does not move.
-                let moving = path_nodes(metric, y, x).filter(|node| node.dx.value() != 0.0);
-                moving.map(|n| (n.dx.abs() / travel).sqrt() * (n.y - on_target(target, n.x))).collect()
-            }
-            Reduction::RmsAtPoints(points) => {
-                let left = left_at_points(metric, points, y, x).unwrap_or_default();
-                let weight = T::constant((left.len() as f64).sqrt().recip());
-                left.into_iter().map(|left| weight * left).collect()
-            }
-            Reduction::Least
-            | Reduction::Greatest
-            | Reduction::Range
-            | Reduction::Change
-            | Reduction::Mean
-            | Reduction::Integral
-            | Reduction::Value(_)
-            | Reduction::Slope(_) => Vec::new(),
+    fn parts<T: Real>((y, x): &Curves<'_, T>, metric: &Metric, target: &[[f64; 2]]) -> Vec<T> {
+        if metric.take.integral().is_some() {
+            let travel = travel(metric, y, x);
+            // The root has no derivative if the abscissa does not move.
+            let moving = path_nodes(metric, y, x).filter(|node| node.dx.value() != 0.0);
+            moving.map(|n| (n.dx.abs() / travel).sqrt() * (n.y - on_target(target, n.x))).collect()
+        } else {
+            let left = left_at_points(metric, target, y, x).unwrap_or_default();
+            let weight = T::constant((left.len() as f64).sqrt().recip());
+            left.into_iter().map(|left| weight * left).collect()
         }
     }
-    MetricParts::of(model, solution, metric, |curves| parts(curves, metric), |curves| parts(curves, metric))
+    let plain = |curves: &Curves<'_, f64>| parts(curves, metric, target);
+    MetricParts::of(model, solution, metric, plain, |curves| parts(curves, metric, target))
 }
 
 /// Maximum (`sign` 1) or minimum (-1) of the curve of a metric in each interval between output times. Intervals beyond
@@ -672,9 +605,9 @@ fn interpolation_error(
 ) -> Option<f64> {
     let interval = |t: f64| (y.values.len() > 1).then(|| y.interval(t));
     let at_place = |t: f64| interval(t).map_or(Some(0.0), |k| time_error(y, x, k, t));
-    match &metric.take {
-        Reduction::Value(_) => at_place(time?),
-        Reduction::Slope(_) => {
+    match metric.take.part() {
+        CurvePart::Place { is_slope: false, .. } => at_place(time?),
+        CurvePart::Place { is_slope: true, .. } => {
             let Some(k) = interval(time?) else { return Some(0.0) };
             let time = time?;
             let order = x.as_ref().map_or(Some(0), |x| x.order_of_rest(k, time));
@@ -690,9 +623,8 @@ fn interpolation_error(
             let [dx, wide_dx] = x.as_ref().map_or(Some([1.0, 0.0]), rate)?;
             Some(((dy + wide_dy) / (dx + wide_dx) - dy / dx).abs())
         }
-        Reduction::Greatest | Reduction::Least => {
-            let sign = if metric.take == Reduction::Greatest { 1.0 } else { -1.0 };
-            let time = time?;
+        CurvePart::Extrema([sign]) => {
+            let (sign, time) = (*sign, time?);
             let (inside, along) = (|at: f64| within_window(metric, at), |k, t| along(x, k, t));
             let cut = x.as_ref().is_some_and(|x| {
                 let at = interval(time).map_or(f64::NAN, |k| x.number(k, time));
@@ -721,17 +653,18 @@ fn interpolation_error(
             }
             Some(here.max(beyond))
         }
-        Reduction::Range => {
-            let of = |end: Reduction| {
-                let end = Metric { take: end, ..metric.clone() };
+        CurvePart::Extrema(signs) => {
+            let of = |sign: &f64| {
+                let take_end = if *sign > 0.0 { Reduction::Greatest } else { Reduction::Least };
+                let end = Metric { take: take_end, ..metric.clone() };
                 let (value, time) = take(&end, y, x)?;
                 interpolation_error(&end, y, x, value, time)
             };
-            Some(of(Reduction::Greatest)? + of(Reduction::Least)?)
+            signs.iter().map(of).sum()
         }
-        Reduction::Change => Some(0.0),
-        Reduction::Mean | Reduction::Integral | Reduction::Rms(_) => path_error(metric, y, x, value),
-        Reduction::RmsAtPoints(points) => {
+        CurvePart::Ends => Some(0.0),
+        CurvePart::Path(_) => path_error(metric, y, x, value),
+        CurvePart::Points(points) => {
             // The root mean square of the errors at the points
             let counting = points.iter().filter(|p| within_window(metric, p[0]));
             let errors = counting.map(|p| crossings(y, x, p[0]).next().and_then(|(_, t)| at_place(t)));
@@ -753,8 +686,8 @@ fn take<T: Real>(
     if y.values.is_empty() {
         return None;
     }
-    if y.values.len() == 1 && matches!(metric.take, Reduction::Value(_) | Reduction::Slope(_)) {
-        return take_at_single_time(metric, y, x);
+    if let ([_], CurvePart::Place { at, is_slope }) = (&y.values[..], metric.take.part()) {
+        return take_at_single_time(at, is_slope, y, x).map(|value| (value, Some(y.times[0])));
     }
     match &metric.take {
         Reduction::Greatest => extreme(metric, y, x, 1.0).map(|(v, t)| (v, Some(t))),
@@ -776,7 +709,7 @@ fn take<T: Real>(
             Some((slope_at(y, x.as_ref(), k, t, *at), Some(y.within(k, t))))
         }
         Reduction::Mean | Reduction::Integral | Reduction::Rms(_) => {
-            PathIntegral::of(&metric.take)?.value(path_nodes(metric, y, x)).map(|value| (value, None))
+            metric.take.integral()?.value(path_nodes(metric, y, x)).map(|value| (value, None))
         }
         Reduction::RmsAtPoints(points) => {
             let left = left_at_points(metric, points, y, x)?;
@@ -810,43 +743,29 @@ fn slope_at<T: Real>(
     y.at(k, moved)[1] / x.at(k, moved)[1]
 }
 
-/// Takes a metric of a motion with one output time: a curve that is one point with its rates.
+/// Value or slope where the abscissa is `at`, of a motion with one output time: a curve that is one point with its rates.
 fn take_at_single_time<T: Real>(
-    metric: &Metric,
+    at: f64,
+    is_slope: bool,
     y: &SampledCurve<'_, T>,
     x: &Option<SampledCurve<'_, T>>,
-) -> Option<(T, Option<f64>)> {
-    let (time, [value, rate, _]) = (y.times[0], y.values[0]);
-    let place = x.as_ref().map_or(T::constant(time), |x| x.values[0][0]);
-    let is_there = |at: f64| (place.value() - at).abs() <= THERE * at.abs().max(1.0);
+) -> Option<T> {
+    let [value, rate, _] = y.values[0];
+    let place = x.as_ref().map_or(T::constant(y.times[0]), |x| x.values[0][0]);
+    if !((place.value() - at).abs() <= THERE * at.abs().max(1.0)) {
+        return None;
+    }
     // dy/dx = y. / x.
     let slope = |x: &SampledCurve<'_, T>| (x.orders > 1 && y.orders > 1).then(|| rate / x.values[0][1]);
-    match &metric.take {
-        Reduction::Value(at) if is_there(*at) => match x {
-            // The abscissa is fixed and the time varies:  y(x = at) = y + (at - x) y. / x.
-            Some(x) if x.values[0][1].value() != 0.0 => {
-                let moved = slope(x).map_or(T::constant(0.0), |slope| (T::constant(*at) - place) * slope);
-                Some((value + moved, Some(time)))
-            }
-            _ => Some((value, Some(time))),
-        },
-        Reduction::Slope(at) if is_there(*at) => {
-            let slope = match x {
-                Some(x) => slope(x)?,
-                None => (y.orders > 1).then_some(rate)?,
-            };
-            Some((slope, Some(time)))
+    match x {
+        Some(x) if is_slope => slope(x),
+        None if is_slope => (y.orders > 1).then_some(rate),
+        // The abscissa is fixed and the time varies:  y(x = at) = y + (at - x) y. / x.
+        Some(x) if x.values[0][1].value() != 0.0 => {
+            let moved = slope(x).map_or(T::constant(0.0), |slope| (T::constant(at) - place) * slope);
+            Some(value + moved)
         }
-        Reduction::Value(_)
-        | Reduction::Slope(_)
-        | Reduction::Greatest
-        | Reduction::Least
-        | Reduction::Range
-        | Reduction::Change
-        | Reduction::Mean
-        | Reduction::Integral
-        | Reduction::Rms(_)
-        | Reduction::RmsAtPoints(_) => None,
+        Some(_) | None => Some(value),
     }
 }
 

@@ -5,7 +5,7 @@
 //! that a run for metrics leaves out the others.
 
 use crate::measure::is_formula;
-use crate::model::{Metric, Model, OutputSource, Reduction};
+use crate::model::{CurvePart, Metric, Model, OutputSource};
 
 use super::metric::{derivative_times, solution_of};
 use super::solution::Solution;
@@ -35,19 +35,17 @@ pub(crate) struct NeededResults {
 impl NeededResults {
     /// Needs of metrics with these uses that depend on the output times alone; `None` if one depends on values.
     pub fn of_times(model: &Model, uses: &[MetricUse]) -> Option<Self> {
-        let is_change = |(metric, _): (&Metric, _)| matches!(metric.take, Reduction::Change);
+        let is_of_ends = |(metric, _): (&Metric, _)| metric.take.part() == CurvePart::Ends;
         let last = model.times.len().saturating_sub(1);
         let needs = || Self::of(model, uses, model.times.len(), |_, _| Some(vec![0, last]));
-        used(model, uses).all(is_change).then(needs)
+        used(model, uses).all(is_of_ends).then(needs)
     }
 
     /// Needs of metrics with these uses at the times of a solution, whose values are known.
     pub fn of_solution(model: &Model, uses: &[MetricUse], solution: &Solution) -> Self {
         let solution = solution_of(solution);
         Self::of(model, uses, solution.motion.len(), |metric, metric_use| {
-            let is_extremum =
-                matches!(metric.take, Reduction::Least | Reduction::Greatest | Reduction::Range);
-            let of_all = is_extremum && metric_use == MetricUse::Candidates;
+            let of_all = !metric.take.extrema().is_empty() && metric_use == MetricUse::Candidates;
             if of_all { None } else { derivative_times(solution, metric) }
         })
     }

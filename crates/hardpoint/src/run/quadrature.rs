@@ -5,37 +5,10 @@
 //! times (`between.rs`).
 
 use super::curve::{Polynomial, SampledCurve, WidePolynomial, crossing};
-use crate::model::{Metric, Reduction, on_target};
+use crate::model::{Metric, PathIntegral, on_target};
 use crate::number::Real;
 
-/// A metric that is an integral over the path.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum PathIntegral<'m> {
-    /// Mean over the travel of the abscissa, in both directions.
-    Mean,
-    /// Integral over the abscissa: backward travel counts negative.
-    Integral,
-    /// Root of the mean square of the difference from this target.
-    Rms(&'m [[f64; 2]]),
-}
-
-impl<'m> PathIntegral<'m> {
-    /// Integral of a reduction, if it is one.
-    pub(super) fn of(take: &'m Reduction) -> Option<Self> {
-        match take {
-            Reduction::Mean => Some(Self::Mean),
-            Reduction::Integral => Some(Self::Integral),
-            Reduction::Rms(target) => Some(Self::Rms(target)),
-            Reduction::Least
-            | Reduction::Greatest
-            | Reduction::Range
-            | Reduction::Change
-            | Reduction::RmsAtPoints(_)
-            | Reduction::Value(_)
-            | Reduction::Slope(_) => None,
-        }
-    }
-
+impl PathIntegral<'_> {
     /// Integrand as a function of abscissa and value.
     fn integrand<T: Real>(self, at: T, value: T) -> T {
         match self {
@@ -161,7 +134,7 @@ pub(super) fn path_stretches<T: Real>(
 ) -> Vec<Stretch<T>> {
     let x = x.as_ref();
     let [low, high] = metric.window.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
-    let corners = match PathIntegral::of(&metric.take) {
+    let corners = match metric.take.integral() {
         Some(PathIntegral::Rms(target)) if target.len() > 2 => &target[1..target.len() - 1],
         Some(PathIntegral::Rms(_) | PathIntegral::Mean | PathIntegral::Integral) | None => &[],
     };
@@ -211,7 +184,7 @@ pub(super) fn coarse_middles(
     if y.orders == 1 {
         return Vec::new();
     }
-    let Some(of) = PathIntegral::of(&metric.take) else { return Vec::new() };
+    let Some(of) = metric.take.integral() else { return Vec::new() };
     let stretches = path_stretches(metric, y, x);
     let Some(value) = of.value(stretches.iter().flat_map(|s| s.nodes(y, x))) else { return Vec::new() };
     // For most curves the polynomials of lower degree are already accurate enough.
@@ -320,6 +293,6 @@ pub(super) fn path_error(
     x: &Option<SampledCurve<'_, f64>>,
     value: f64,
 ) -> Option<f64> {
-    let of = PathIntegral::of(&metric.take)?;
+    let of = metric.take.integral()?;
     of.error(value, &integral_errors(of, (y, x), &path_stretches(metric, y, x), value, wide))
 }

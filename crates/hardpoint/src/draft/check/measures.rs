@@ -8,10 +8,10 @@ use crate::draft::{
 use crate::expression::Expression;
 use crate::model::element::{Compliance, CoupledStiffness};
 use crate::model::{
-    Axes, AxleMeasure, BodyId, CaseId, ClearanceId, Combination, Dimension, Direction, DriverId, Element,
-    ElementId, JacobianValue, JointId, KnownOrders, Measure, MeasureKind, Metric, MomentTable, NumberId,
-    OrientationAngle, OutputSource, PointId, Ray, ReactionPart, Reduction, Solid, SpringTable, WheelId,
-    WheelMeasure, WheelPoint, loads, of_bodies,
+    Axes, AxleMeasure, BodyId, CaseId, ClearanceId, Combination, CurvePart, Dimension, Direction, DriverId,
+    Element, ElementId, JacobianValue, JointId, Measure, MeasureKind, Metric, MomentTable, NumberId,
+    OrientationAngle, OutputSource, PointId, Ray, ReactionPart, Solid, SpringTable, WheelId, WheelMeasure,
+    WheelPoint, loads, of_bodies,
 };
 use crate::space::Vec3;
 
@@ -205,19 +205,7 @@ impl Checker<'_> {
         };
         let x = |c: &Self| over.map_or(Dimension::NUMBER, |over| c.model.dimension(over));
         let (x, y) = (x(self), self.model.dimension(of));
-        let points = |target: &[[f64; 2]]| target.iter().map(|p| [si(x, p[0]), si(y, p[1])]).collect();
-        let take = match &m.take {
-            Reduction::Value(at) => Reduction::Value(si(x, *at)),
-            Reduction::Slope(at) => Reduction::Slope(si(x, *at)),
-            Reduction::Rms(target) => Reduction::Rms(points(target)),
-            Reduction::RmsAtPoints(target) => Reduction::RmsAtPoints(points(target)),
-            take @ (Reduction::Least
-            | Reduction::Greatest
-            | Reduction::Range
-            | Reduction::Change
-            | Reduction::Mean
-            | Reduction::Integral) => take.clone(),
-        };
+        let take = m.take.converted(&|at| si(x, at), &|value| si(y, value));
         let rises = |points: &mut dyn Iterator<Item = f64>| {
             let points: Vec<f64> = points.collect();
             points.iter().all(|x| x.is_finite()) && points.windows(2).all(|w| w[0] < w[1])
@@ -237,13 +225,14 @@ impl Checker<'_> {
                 .help("list points `[abscissa, value]` in the order of their abscissa");
             return None;
         }
-        if take == Reduction::RmsAtPoints(Vec::new()) {
+        if take.part() == CurvePart::Points(&[]) {
             let message = format!("the target of metric `{}` has no points", m.name);
             self.fault("HP0234", here.key("target"), message)
                 .help("list points `[abscissa, value]` in the order of their abscissa");
             return None;
         }
-        if let (Reduction::Slope(_), KnownOrders { orders: 1, .. }) = (&take, self.model.known(of)) {
+        if matches!(take.part(), CurvePart::Place { is_slope: true, .. }) && self.model.known(of).orders == 1
+        {
             let message = format!("metric `{}` needs the rate of `{}`, which is not known", m.name, m.of);
             let [note, help] = if self.model.equilibrium.is_some() {
                 [

@@ -45,8 +45,15 @@ const CEILINGS: &[(&str, [usize; 5])] = &[
 ];
 
 /// Enums whose matches name every variant.
-const CLOSED: [&str; 6] =
-    ["ElementKind", "ElementKindDraft", "MeasureKind", "MeasureKindDraft", "Reduction", "StopKind"];
+const CLOSED: [&str; 7] = [
+    "ElementKind",
+    "ElementKindDraft",
+    "MeasureKind",
+    "MeasureKindDraft",
+    "Reduction",
+    "CurvePart",
+    "StopKind",
+];
 
 /// Names that a count has found, with their shares of it.
 type Found = Vec<(String, usize)>;
