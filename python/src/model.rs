@@ -7,9 +7,7 @@ use std::sync::{Arc, OnceLock};
 use hardpoint::Analysis;
 use hardpoint::joint::Quantity::{Angle, Length};
 use hardpoint::measure::outputs;
-use hardpoint::model::{
-    BodyId, CaseId, Change, Direction, DriverId, ElementId, JointId, OutputSource, VariableId,
-};
+use hardpoint::model::{BodyId, CaseId, Direction, DriverId, ElementId, JointId, OutputSource, VariableId};
 use hardpoint::space::Vec3;
 use hardpoint::topology::{Formulation, TopologyError};
 use hardpoint_file::{Contents, ModelFile};
@@ -262,7 +260,7 @@ impl Model {
         let body = |b: BodyId| model.bodies[b.0].name.as_str();
         let variables = model.variables.iter().enumerate().map(|(k, v)| {
             let shown = |b: f64| file.value_of(VariableId(k), b);
-            let is_parameter = v.changes.iter().any(|c| matches!(c, Change::Parameter(_)));
+            let is_parameter = v.changes.iter().any(|c| c.parameter().is_some());
             json!({
                 "name": v.name,
                 "unit": variable_unit(model, units, v),

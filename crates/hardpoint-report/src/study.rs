@@ -3,6 +3,7 @@
 
 use hardpoint::joint::Quantity;
 use hardpoint::measure::Output;
+use hardpoint::model::change::ChangeTarget;
 use hardpoint::model::{Change, DesignVariable, Metric, Model, OutputSource};
 use hardpoint_file::{ModelFile, Units};
 use hardpoint_study::StudyCost;
@@ -158,21 +159,23 @@ pub(crate) fn without_round_off(x: f64, [low, high]: [f64; 2]) -> f64 {
 /// Nominal value, SI, of the number in the file that a variable changes, if there is exactly one.
 pub(crate) fn nominal_number(file: &ModelFile, variable: &DesignVariable) -> Option<f64> {
     let model = &file.model;
-    let number = |change: &Change| match change {
-        Change::Move(m) => {
-            let along = (0..3).find(|axis| m.velocity[*axis] == 1.0 && m.velocity.norm() == 1.0);
-            along.map(|axis| model.hardpoints[m.hardpoint.0].position[axis])
+    let number = |change: &Change| match change.target() {
+        ChangeTarget::Hardpoint(hardpoint, velocity) => {
+            let along = (0..3).find(|axis| velocity[*axis] == 1.0 && velocity.norm() == 1.0);
+            along.map(|axis| model.hardpoints[hardpoint.0].position[axis])
         }
-        Change::Length(c) => model.joints[c.joint.0].length.filter(|_| c.rate == 1.0),
-        Change::Parameter(c) => Some(model.parameters[c.parameter.0].value).filter(|_| c.rate == 1.0),
-        Change::Marker(_) | Change::Law(_) | Change::Field(_) => None,
+        ChangeTarget::Length(joint, rate) => model.joints[joint.0].length.filter(|_| rate == 1.0),
+        ChangeTarget::Parameter(p, rate) => Some(model.parameters[p.0].value).filter(|_| rate == 1.0),
+        ChangeTarget::Marker(_) | ChangeTarget::Law(..) => None,
     };
-    let mut parameters = variable.changes.iter().filter(|change| matches!(change, Change::Parameter(_)));
+    let mut parameters = variable.changes.iter().filter(|change| change.parameter().is_some());
     if let Some(value) = parameters.find_map(number) {
         return Some(value);
     }
     // Mirrored changes are not numbers of the file.
-    let is_image = |change: &Change| matches!(change, Change::Move(m) if file.is_image(&model.hardpoints[m.hardpoint.0].name));
+    let is_image = |change: &Change| {
+        change.hardpoint().is_some_and(|(moved, _)| file.is_image(&model.hardpoints[moved.0].name))
+    };
     let mut own = variable.changes.iter().filter(|change| !is_image(change));
     match (own.next(), own.next()) {
         (Some(only), None) => number(only),

@@ -4,9 +4,7 @@
 //! `y + y_b d + d y_bb d / 2` and the exact ones, SI (`docs/theory.md`, section 7).
 
 use hardpoint::joint::Quantity;
-use hardpoint::model::{
-    Change, DesignVariable, Dimension, End, HardpointId, JointId, Model, VariableId, change,
-};
+use hardpoint::model::{DesignVariable, Dimension, End, HardpointId, JointId, Model, VariableId, change};
 use hardpoint::run::{Analysis, Run, Solution};
 use hardpoint::sensitivity::{Admissibility, JointDefect};
 use hardpoint::space::Vec3;
@@ -207,18 +205,10 @@ pub fn variable_named(model: &mut Model, name: &str) -> Option<VariableId> {
 /// Coordinate of a variable that moves one hardpoint along one global axis and nothing else, with the change of the
 /// coordinate per unit of the variable; -1 if the variable points against the axis.
 fn coordinate_of(variable: &DesignVariable) -> Option<(HardpointId, usize, f64)> {
-    let Change::Move(change::Move { hardpoint, .. }) = *variable.changes.first()? else { return None };
+    let (hardpoint, _) = variable.changes.first()?.hardpoint()?;
     let mut velocity = Vec3::ZERO;
     for change in &variable.changes {
-        match change {
-            Change::Move(m) if m.hardpoint == hardpoint => velocity += m.velocity,
-            Change::Move(_)
-            | Change::Marker(_)
-            | Change::Length(_)
-            | Change::Parameter(_)
-            | Change::Law(_)
-            | Change::Field(_) => return None,
-        }
+        velocity += change.hardpoint().filter(|(moved, _)| *moved == hardpoint)?.1;
     }
     let part = |axis: usize| velocity.dot(Vec3::AXES[axis]);
     let mut along = (0..3).filter(|axis| part(*axis) != 0.0);

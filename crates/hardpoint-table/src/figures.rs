@@ -2,7 +2,7 @@
 
 use hardpoint::joint::Quantity;
 use hardpoint::law::ParameterKind;
-use hardpoint::model::{Change, DesignVariable, Dimension, Model};
+use hardpoint::model::{DesignVariable, Dimension, Model};
 
 use crate::Units;
 
@@ -143,11 +143,11 @@ pub fn variable_unit(model: &Model, units: Units, variable: &DesignVariable) -> 
         return symbol(units, variable.quantity).into();
     }
     let mut found = variable.changes.iter().map(|change| {
-        let Change::Law(change) = change else { return None };
-        let driver = &model.drivers[change.driver.0];
+        let (driver, parameter, rate) = change.law()?;
+        let driver = &model.drivers[driver.0];
         let quantity = model.driven(driver).quantity;
-        let kind = driver.law.parameters()[change.parameter].kind;
-        parameter_unit(units, quantity, kind, change.rate.abs())
+        let kind = driver.law.parameters()[parameter].kind;
+        parameter_unit(units, quantity, kind, rate.abs())
     });
     let first = found.next().flatten();
     match first {

@@ -3,7 +3,7 @@
 use hardpoint::constraint::{MarkerPair, Row};
 use hardpoint::design::{Geometry, JointConstants};
 use hardpoint::joint::{Need, Quantity};
-use hardpoint::model::{Change, Direction, Hardpoint, Joint, Model, VariableId};
+use hardpoint::model::{Change, Direction, Hardpoint, Joint, JointId, Model, VariableId};
 use hardpoint::space::{Mat3, Vec3};
 use toml_edit::{DocumentMut, Item, Value};
 
@@ -266,7 +266,8 @@ impl Edit<'_> {
         for (h, hardpoint) in file.model.hardpoints.iter().enumerate() {
             for axis in 0..3 {
                 let (old, new) = (hardpoint.position[axis], places[h][axis]);
-                let moved = |c: &Change| matches!(c, Change::Move(m) if m.hardpoint.0 == h && m.velocity[axis] != 0.0);
+                let moved =
+                    |c: &Change| c.hardpoint().is_some_and(|(moved, v)| moved.0 == h && v[axis] != 0.0);
                 let by = self.of(moved);
                 if by.is_empty() || old == new {
                     continue;
@@ -308,10 +309,8 @@ impl Edit<'_> {
     fn parameters(&mut self) {
         let model = &self.file.model;
         for (p, parameter) in model.parameters.iter().enumerate() {
-            let rates = self.changes().filter_map(|(_, change, value)| match change {
-                Change::Parameter(c) if c.parameter.0 == p => Some(c.rate * value),
-                _ => None,
-            });
+            let rate = |c: &Change| c.parameter().filter(|(changed, _)| changed.0 == p).map(|(_, rate)| rate);
+            let rates = self.changes().filter_map(|(_, change, value)| Some(rate(change)? * value));
             let by: f64 = rates.sum();
             if by == 0.0 {
                 continue;
@@ -320,7 +319,7 @@ impl Edit<'_> {
             let written = [&[Key("parameters"), name][..], &[Key("parameters"), name, Key("value")]]
                 .iter()
                 .any(|way| self.write(way, parameter.quantity, old, old + by));
-            let by = self.of(|c| matches!(c, Change::Parameter(c) if c.parameter.0 == p));
+            let by = self.of(|c| rate(c).is_some());
             if !written && !self.is_image(&parameter.name) && !self.is_elsewhere(&by, &parameter.name) {
                 let why = format!("parameter `{}` is given by an expression", parameter.name);
                 self.refuse(&by, why, "change the parameters that it follows");
@@ -334,12 +333,7 @@ impl Edit<'_> {
         let [before, after] = [&[][..], &self.values].map(|design| model.geometry(design));
         let places = model.hardpoint_places(&self.values);
         for (j, joint) in model.joints.iter().enumerate() {
-            let own = |c: &Change| match c {
-                Change::Marker(c) => c.joint.0 == j,
-                Change::Field(c) => c.joint.0 == j,
-                Change::Move(_) | Change::Length(_) | Change::Parameter(_) | Change::Law(_) => false,
-            };
-            let by = self.of(own);
+            let by = self.of(|c| c.markers_of() == Some(JointId(j)));
             if by.is_empty() {
                 continue;
             }
@@ -412,7 +406,7 @@ impl Edit<'_> {
                 shortest(x, ROUND_OFF, |x| x, x)
             });
             let x: Value = format!("[{}]", texts.join(", ")).parse().expect("a list of numbers is a value");
-            let by = self.of(|c| !matches!(c, Change::Law(_) | Change::Parameter(_)));
+            let by = self.of(|c| c.law().is_none() && c.parameter().is_none());
             let [section, what] = if joint.unnamed { ["drivers", "driver"] } else { ["joints", "joint"] };
             let table = table_at(&mut self.document, &[Key(section), Key(&joint.name)]);
             if table.map(|table| add(table, "axis2", x)).is_none() && !self.is_elsewhere(&by, &joint.name) {

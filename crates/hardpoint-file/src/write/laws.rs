@@ -2,7 +2,6 @@
 
 use hardpoint::joint::Quantity;
 use hardpoint::law::{Parameter, ParameterKind};
-use hardpoint::model::Change;
 use toml_edit::Item;
 
 use crate::read::LAW_TABLE;
@@ -18,14 +17,7 @@ impl Edit<'_> {
         let laws = model.laws(&self.values);
         let mut changed: Vec<(usize, usize)> = self
             .changes()
-            .filter_map(|(_, change, _)| match change {
-                Change::Law(c) => Some((c.driver.0, c.parameter)),
-                Change::Move(_)
-                | Change::Marker(_)
-                | Change::Length(_)
-                | Change::Parameter(_)
-                | Change::Field(_) => None,
-            })
+            .filter_map(|(_, change, _)| change.law().map(|(driver, parameter, _)| (driver.0, parameter)))
             .collect();
         changed.sort_unstable();
         changed.dedup();
@@ -37,7 +29,8 @@ impl Edit<'_> {
                 ParameterKind::Angle => Quantity::Angle,
                 ParameterKind::Number | ParameterKind::Time | ParameterKind::Frequency => Quantity::Number,
             };
-            let by = self.of(|c| matches!(c, Change::Law(c) if c.driver.0 == d && c.parameter == p));
+            let by =
+                self.of(|c| c.law().is_some_and(|(driver, parameter, _)| [driver.0, parameter] == [d, p]));
             if !self.law_number(&driver.name, quantity, &old, new.value)
                 && !self.is_image(&driver.name)
                 && !self.is_elsewhere(&by, &driver.name)

@@ -20,21 +20,10 @@ impl Edit<'_> {
     pub(super) fn given_lengths(&mut self) {
         let model = &self.file.model;
         for (j, joint) in model.joints.iter().enumerate() {
-            let own = |c: &Change| matches!(c, Change::Length(c) if c.joint.0 == j);
-            let by = self.of(own);
+            let rate = |c: &Change| c.length_of().filter(|(changed, _)| changed.0 == j).map(|(_, rate)| rate);
+            let by = self.of(|c| rate(c).is_some());
             let (Some(old), false) = (joint.length, by.is_empty()) else { continue };
-            let grows: f64 = self
-                .changes()
-                .filter_map(|(_, c, value)| match c {
-                    Change::Length(c) if c.joint.0 == j => Some(c.rate * value),
-                    Change::Length(_)
-                    | Change::Move(_)
-                    | Change::Marker(_)
-                    | Change::Parameter(_)
-                    | Change::Law(_)
-                    | Change::Field(_) => None,
-                })
-                .sum();
+            let grows: f64 = self.changes().filter_map(|(_, c, value)| Some(rate(c)? * value)).sum();
             let way = [Key("joints"), Key(&joint.name), Key("length")];
             if !self.write(&way, Quantity::Length, old, old + grows)
                 && !self.is_image(&joint.name)
@@ -169,8 +158,9 @@ impl Edit<'_> {
                 place[axis],
             );
         }
-        let moves =
-            |v: &DesignVariable| v.changes.iter().any(|c| matches!(c, Change::Move(c) if c.hardpoint == end));
+        let moves = |v: &DesignVariable| {
+            v.changes.iter().any(|c| c.hardpoint().is_some_and(|(moved, _)| moved == end))
+        };
         for variable in self.file.own_variables().iter().filter(|v| !v.fixed_length && moves(v)) {
             let entry = self.entry_of(&variable.name).ok_or(of)?;
             let is_listed = ["move", "mirrored"].into_iter().any(|key| {
@@ -215,14 +205,11 @@ fn moved_by(
 ) -> BTreeSet<Source> {
     let mut moved = BTreeSet::new();
     for change in variables.iter().filter(|v| is_meant(v)).flat_map(|v| &v.changes) {
-        match change {
-            Change::Move(c) => {
-                let axes = (0..3).filter(|axis| c.velocity[*axis] != 0.0);
-                moved.extend(axes.map(|axis| Source::Coordinate(c.hardpoint, axis)));
-            }
-            Change::Parameter(c) => drop(moved.insert(Source::Parameter(c.parameter))),
-            Change::Marker(_) | Change::Length(_) | Change::Law(_) | Change::Field(_) => {}
+        if let Some((hardpoint, velocity)) = change.hardpoint() {
+            let axes = (0..3).filter(|axis| velocity[*axis] != 0.0);
+            moved.extend(axes.map(|axis| Source::Coordinate(hardpoint, axis)));
         }
+        moved.extend(change.parameter().map(|(parameter, _)| Source::Parameter(parameter)));
     }
     // A formula comes after those that it uses.
     for formula in &model.formulas {

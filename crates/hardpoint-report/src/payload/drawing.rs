@@ -384,10 +384,7 @@ impl Compose<'_> {
             turn: [0.0; 3],
         });
         // The marker of a hinge is at one end of its axis; the velocity is also shown at the other end.
-        let far_ends = self.model.variables[variable.0].changes.iter().filter_map(|change| match change {
-            Change::Move(change) => Some((change.hardpoint, change.velocity)),
-            _ => None,
-        });
+        let far_ends = self.model.variables[variable.0].changes.iter().filter_map(Change::hardpoint);
         let far_ends = far_ends.flat_map(|(at, velocity)| {
             let hinges = self.model.joints.iter().filter(move |j| j.at[0] != at);
             let hinges = hinges.filter(move |j| self.hinge_points(j).is_some_and(|ends| ends.contains(&at)));

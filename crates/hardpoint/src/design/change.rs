@@ -1,23 +1,13 @@
 //! Effects of the kinds of changes on a design, over any number type.
 
+use crate::model::Model;
 use crate::model::change::{self, Change, changes};
-use crate::model::{DriverId, HardpointId, JointId, Model, ParameterId};
 use crate::number::{self, Real};
 use crate::space::{Pose, Vec3, rotation_from_euler_313};
 
 /// Effect of a kind of change on the design, for a value b of its variable. The default methods have no effect.
 pub(crate) trait Effect {
-    /// Returns the hardpoint that moves, and its global velocity V, m per unit.
-    fn hardpoint(&self) -> Option<(HardpointId, Vec3)> {
-        None
-    }
-
-    /// Returns the joint whose markers or length change by themselves.
-    fn joint(&self) -> Option<JointId> {
-        None
-    }
-
-    /// Returns the rate of the rotation vector of that joint's marker e, global, rad per unit; zero if it does not
+    /// Returns the rate of the rotation vector of marker e of the joint, global, rad per unit; zero if it does not
     /// turn. Those of all changes of a marker add up.
     fn rotation(&self, _e: usize) -> Vec3 {
         Vec3::ZERO
@@ -35,30 +25,11 @@ pub(crate) trait Effect {
     fn length<T: Real>(&self, length: T, _b: T) -> T {
         length
     }
-
-    /// Returns the parameter of the model that changes, and its rate, in its own unit per unit.
-    fn parameter(&self) -> Option<(ParameterId, f64)> {
-        None
-    }
-
-    /// Returns the parameter of a driver's law that changes, by its index in
-    /// [`Law::parameters`](crate::law::Law::parameters), and its rate, in its own unit per unit.
-    fn law(&self) -> Option<(DriverId, usize, f64)> {
-        None
-    }
 }
 
-impl Effect for change::Move {
-    fn hardpoint(&self) -> Option<(HardpointId, Vec3)> {
-        Some((self.hardpoint, self.velocity))
-    }
-}
+impl Effect for change::Move {}
 
 impl Effect for change::Marker {
-    fn joint(&self) -> Option<JointId> {
-        Some(self.joint)
-    }
-
     fn rotation(&self, e: usize) -> Vec3 {
         if self.end.covers(e) { self.rotation } else { Vec3::ZERO }
     }
@@ -72,33 +43,17 @@ impl Effect for change::Marker {
 }
 
 impl Effect for change::Length {
-    fn joint(&self) -> Option<JointId> {
-        Some(self.joint)
-    }
-
     #[inline(always)]
     fn length<T: Real>(&self, length: T, b: T) -> T {
         b.times_plus(T::constant(self.rate), length)
     }
 }
 
-impl Effect for change::Parameter {
-    fn parameter(&self) -> Option<(ParameterId, f64)> {
-        Some((self.parameter, self.rate))
-    }
-}
+impl Effect for change::Parameter {}
 
-impl Effect for change::Law {
-    fn law(&self) -> Option<(DriverId, usize, f64)> {
-        Some((self.driver, self.parameter, self.rate))
-    }
-}
+impl Effect for change::Law {}
 
 impl Effect for change::Field {
-    fn joint(&self) -> Option<JointId> {
-        Some(self.joint)
-    }
-
     #[inline(always)]
     fn marker<T: Real>(&self, model: &Model, marker: Pose<T>, e: usize, b: T) -> Pose<T> {
         let joint = &model.joints[self.joint.0];
@@ -118,16 +73,8 @@ impl Effect for change::Field {
 
 /// Delegates to the kind of the change.
 macro_rules! in_designs {
-    ($($(#[doc = $doc:literal])* $kind:ident { $($fields:tt)* } |$known:pat_param| $quantity:expr, |$words:pat_param| $says:expr;)*) => {
+    ($($(#[doc = $doc:literal])* $kind:ident { $($fields:tt)* } |$known:pat_param| $quantity:expr, $target:expr, |$words:pat_param| $says:expr;)*) => {
         impl Effect for Change {
-            fn hardpoint(&self) -> Option<(HardpointId, Vec3)> {
-                match self { $(Self::$kind(change) => change.hardpoint()),* }
-            }
-
-            fn joint(&self) -> Option<JointId> {
-                match self { $(Self::$kind(change) => change.joint()),* }
-            }
-
             fn rotation(&self, e: usize) -> Vec3 {
                 match self { $(Self::$kind(change) => change.rotation(e)),* }
             }
@@ -140,14 +87,6 @@ macro_rules! in_designs {
             #[inline(always)]
             fn length<T: Real>(&self, length: T, b: T) -> T {
                 match self { $(Self::$kind(change) => change.length(length, b)),* }
-            }
-
-            fn parameter(&self) -> Option<(ParameterId, f64)> {
-                match self { $(Self::$kind(change) => change.parameter()),* }
-            }
-
-            fn law(&self) -> Option<(DriverId, usize, f64)> {
-                match self { $(Self::$kind(change) => change.law()),* }
             }
         }
     };

@@ -2,8 +2,6 @@
 
 use crate::model::{Change, Model, Source, Target, VariableId};
 
-use super::change::Effect;
-
 /// Dependencies of formulas on variables and on each other.
 #[derive(Clone, Debug)]
 pub(super) struct Formulas {

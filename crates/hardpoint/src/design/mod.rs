@@ -16,7 +16,6 @@ mod geometry;
 mod map;
 mod shape;
 
-pub(crate) use change::Effect;
 pub use field::{DesignVelocity, MarkerVelocity};
 pub(crate) use geometry::{BodyFixed, ShapeGeometry};
 pub use geometry::{Geometry, JointConstants};

@@ -12,7 +12,7 @@ macro_rules! in_drafts {
     ($(
         $(#[doc = $doc:literal])* $kind:ident {
             $($(#[doc = $field_doc:literal])* $field:ident: $draft:ty => $type:ty),* $(,)?
-        } |$known:pat_param| $quantity:expr, |$words:pat_param| $says:expr;
+        } |$known:pat_param| $quantity:expr, $target:expr, |$words:pat_param| $says:expr;
     )*) => {
         /// Part of a design variable; see [`Change`](crate::model::Change). References are names.
         #[derive(Clone, Debug)]

@@ -86,8 +86,7 @@ impl Model {
         }
         model.formulas.retain(|f| !matches!(f.of, Target::Law(d, _) if laws[d.0].is_some()));
         model.formulas.extend_from_slice(formulas);
-        let is_replaced =
-            |change: &Change| matches!(change, Change::Law(law) if laws[law.driver.0].is_some());
+        let is_replaced = |change: &Change| change.law().is_some_and(|(driver, ..)| laws[driver.0].is_some());
         model.variables.iter_mut().for_each(|v| v.changes.retain(|change| !is_replaced(change)));
         model.metrics.retain(|m| m.case.is_none_or(|of| of == case));
         model.metrics.iter_mut().for_each(|m| m.case = None);

@@ -25,8 +25,8 @@ impl End {
     }
 }
 
-/// The kinds of changes: their fields in a draft and in a model, the quantity of their variable, and their description.
-/// A kind also has an effect (`design/change.rs`) and a check (`draft/check/design.rs`). The model uses its half of
+/// The kinds of changes: their fields in a draft and in a model, the quantity of their variable, the number or marker of
+/// the model that they change, and their description. A kind also has an effect (`design/change.rs`) and a check (`draft/check/design.rs`). The model uses its half of
 /// each line, the draft (`draft/change.rs`) the other, and the design the list.
 macro_rules! changes {
     ($declare:ident) => { $declare! {
@@ -36,7 +36,7 @@ macro_rules! changes {
         hardpoint: String => HardpointId,
         /// Global velocity, m per unit.
         velocity: Vec3 => Vec3,
-    } |_| Quantity::Length,
+    } |_| Quantity::Length, ChangeTarget::Hardpoint(*hardpoint, *velocity),
         |w| w.say("moves", &w.model.hardpoints[hardpoint.0].name, format!(" along {}", (w.direction)(*velocity)));
 
     /// Markers of a joint move and turn by themselves.
@@ -54,6 +54,7 @@ macro_rules! changes {
             (false, true) => Quantity::Angle,
             (true, true) => Quantity::Number,
         },
+        ChangeTarget::Marker(*joint),
         |w| {
             let whose = match end {
                 End::I => " marker i of",
@@ -75,7 +76,7 @@ macro_rules! changes {
         joint: String => JointId,
         /// m per unit.
         rate: f64 => f64,
-    } |_| Quantity::Length,
+    } |_| Quantity::Length, ChangeTarget::Length(*joint, *rate),
         |w| {
             let times = match rate.abs() {
                 1.0 => String::new(),
@@ -96,7 +97,7 @@ macro_rules! changes {
         parameter: String => ParameterId,
         /// In the parameter's unit, per unit.
         rate: f64 => f64,
-    } |known| known.parameter(parameter),
+    } |known| known.parameter(parameter), ChangeTarget::Parameter(*parameter, *rate),
         |w| w.say(&format!("{} parameter", raises(*rate)), &w.model.parameters[parameter.0].name, String::new());
 
     /// A parameter of a driver's law grows, like its amplitude.
@@ -107,7 +108,7 @@ macro_rules! changes {
         parameter: String => usize,
         /// In the parameter's own unit, per unit.
         rate: f64 => f64,
-    } |known| known.parameter_of_law(driver, parameter),
+    } |known| known.parameter_of_law(driver, parameter), ChangeTarget::Law(*driver, *parameter, *rate),
         |w| {
             let driver = &w.model.drivers[driver.0];
             let name = &driver.law.parameters()[*parameter].name;
@@ -125,7 +126,7 @@ macro_rules! changes {
         v: Vec3 => Vec3,
         /// U = d(theta)/d(tau), rad per unit.
         u: Vec3 => Vec3,
-    } |_| Quantity::Number,
+    } |_| Quantity::Number, ChangeTarget::Marker(*joint),
         |w| {
             let marker = if w.model.joints[joint.0].bodies[0] == *body { "i" } else { "j" };
             w.say(&format!("field of marker {marker} of"), w.joint(*joint), String::new());
@@ -139,7 +140,7 @@ macro_rules! in_models {
     ($(
         $(#[doc = $doc:literal])* $kind:ident {
             $($(#[doc = $field_doc:literal])* $field:ident: $draft:ty => $type:ty),* $(,)?
-        } |$known:pat_param| $quantity:expr, |$words:pat_param| $says:expr;
+        } |$known:pat_param| $quantity:expr, $target:expr, |$words:pat_param| $says:expr;
     )*) => {
         /// A part of what a design variable does, per unit of it.
         #[derive(Clone, Debug, PartialEq)]
@@ -161,6 +162,16 @@ macro_rules! in_models {
             }
         )*
 
+        impl Change {
+            /// Returns what it changes, and how fast, per unit of the variable.
+            pub fn target(&self) -> ChangeTarget {
+                match self {
+                    $(#[allow(unused_variables, reason = "the rest is its effect")]
+                    Self::$kind($kind { $($field),* }) => $target,)*
+                }
+            }
+        }
+
         impl ChangeWords<'_> {
             fn change(&mut self, change: &Change) {
                 match change {
@@ -173,6 +184,67 @@ macro_rules! in_models {
 }
 
 changes!(in_models);
+
+/// Number or marker of a model that a change acts on, with its rate per unit of the variable.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ChangeTarget {
+    /// A hardpoint, which has this global velocity, m per unit.
+    Hardpoint(HardpointId, Vec3),
+    /// Markers of a joint by themselves.
+    Marker(JointId),
+    /// The given length of a joint, m per unit.
+    Length(JointId, f64),
+    /// A parameter of the model, in its own unit per unit.
+    Parameter(ParameterId, f64),
+    /// A parameter of a driver's law, by its index in [`Law::parameters`](crate::law::Law::parameters), in its own unit
+    /// per unit.
+    Law(DriverId, usize, f64),
+}
+
+impl Change {
+    /// Returns the hardpoint that moves, and its global velocity, m per unit.
+    pub fn hardpoint(&self) -> Option<(HardpointId, Vec3)> {
+        if let ChangeTarget::Hardpoint(hardpoint, velocity) = self.target() {
+            Some((hardpoint, velocity))
+        } else {
+            None
+        }
+    }
+
+    /// Returns the joint whose markers change by themselves.
+    pub fn markers_of(&self) -> Option<JointId> {
+        if let ChangeTarget::Marker(joint) = self.target() { Some(joint) } else { None }
+    }
+
+    /// Returns the joint whose given length changes, and the rate, m per unit.
+    pub fn length_of(&self) -> Option<(JointId, f64)> {
+        if let ChangeTarget::Length(joint, rate) = self.target() { Some((joint, rate)) } else { None }
+    }
+
+    /// Returns the joint whose markers or length change by themselves.
+    pub(crate) fn joint(&self) -> Option<JointId> {
+        self.markers_of().or(self.length_of().map(|(joint, _)| joint))
+    }
+
+    /// Returns the parameter of the model that changes, and its rate, in its own unit per unit.
+    pub fn parameter(&self) -> Option<(ParameterId, f64)> {
+        if let ChangeTarget::Parameter(parameter, rate) = self.target() {
+            Some((parameter, rate))
+        } else {
+            None
+        }
+    }
+
+    /// Returns the parameter of a driver's law that changes, by its index in
+    /// [`Law::parameters`](crate::law::Law::parameters), and its rate, in its own unit per unit.
+    pub fn law(&self) -> Option<(DriverId, usize, f64)> {
+        if let ChangeTarget::Law(driver, parameter, rate) = self.target() {
+            Some((driver, parameter, rate))
+        } else {
+            None
+        }
+    }
+}
 
 /// Description of what changes do to some parts of a model: `moves` `a` and `b` ` along x`.
 #[derive(Clone, Debug, PartialEq)]

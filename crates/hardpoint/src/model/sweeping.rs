@@ -119,10 +119,7 @@ impl Model {
     /// own value, and 0 for all variables that describe a change.
     pub fn nominal_value(&self, variable: VariableId) -> f64 {
         let variable = &self.variables[variable.0];
-        let own = variable.changes.iter().find_map(|change| match change {
-            Change::Parameter(change) => Some(&self.parameters[change.parameter.0]),
-            _ => None,
-        });
-        own.filter(|p| p.name == variable.name).map_or(0.0, |p| p.value)
+        let own = variable.changes.iter().find_map(Change::parameter);
+        own.map(|(p, _)| &self.parameters[p.0]).filter(|p| p.name == variable.name).map_or(0.0, |p| p.value)
     }
 }

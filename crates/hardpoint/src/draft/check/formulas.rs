@@ -2,11 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-use crate::design::Effect;
 use crate::draft::{ChangeDraft, Draft, DraftLocation, FormulaOf, NumberDraft, Section};
 use crate::expression::Expression;
 use crate::joint::Quantity;
 use crate::law::Law;
+use crate::model::Change;
 use crate::model::{
     CaseId, DriverId, ElementNumber, Formula, Hardpoint, HardpointId, JointId, NamedNumber, NumberId,
     ParameterId, Source, Target,
@@ -411,7 +411,7 @@ impl<'a> Checker<'a> {
             }
         }
         let changed: BTreeSet<JointId> =
-            self.model.variables.iter().flat_map(|v| &v.changes).filter_map(Effect::joint).collect();
+            self.model.variables.iter().flat_map(|v| &v.changes).filter_map(Change::joint).collect();
         let mut lengths: BTreeSet<JointId> = BTreeSet::new();
         for LocatedFormula { mut formula, at, name, case } in std::mem::take(&mut self.written) {
             let model = &self.model;

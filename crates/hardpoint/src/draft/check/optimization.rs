@@ -2,7 +2,6 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-use crate::design::Effect;
 use crate::draft::{
     ChangeDraft, DraftLocation, GoalDraft, LimitDraft, LimitTargetDraft, OptimizationSettingsDraft, Section,
     VariableDraft,
