@@ -73,7 +73,10 @@ impl Effect for change::Field {
 
 /// Delegates to the kind of the change.
 macro_rules! in_designs {
-    ($($(#[doc = $doc:literal])* $kind:ident { $($fields:tt)* } |$known:pat_param| $quantity:expr, $target:expr, |$words:pat_param| $says:expr;)*) => {
+    ($(
+        $(#[doc = $doc:literal])* $kind:ident { $($fields:tt)* }
+        |$known:pat_param| $quantity:expr, $target:expr, |$words:pat_param| $says:expr;
+    )*) => {
         impl Effect for Change {
             fn rotation(&self, e: usize) -> Vec3 {
                 match self { $(Self::$kind(change) => change.rotation(e)),* }

@@ -154,9 +154,12 @@ pub(super) trait Field: Sized {
 /// Measure types as written, and their resolution to the model.
 macro_rules! in_drafts {
     ($(
-        $(#[doc = $doc:literal])* $variant:ident $name:literal [$vector:ident, normal: $normal:literal] {
+        $(#[doc = $doc:literal])* $variant:ident $name:literal
+        [$class:ident, $drivable:ident, $vector:ident, normal: $normal:literal] {
             $($(#[doc = $field_doc:literal])* $field:ident: $draft:ty => $type:ty),* $(,)?
-        } |$model:pat_param, $words:pat_param| $dimension:expr, $known:expr, $says:expr;
+        } |$model:pat_param, $words:pat_param|
+            dimension: $dimension:expr, known: $known:expr, kinks: $kinks:expr, positive: $positive:expr,
+            words: $says:expr;
     )*) => {
         /// Kind of a measure as written; see [`MeasureKind`].
         #[derive(Clone, Debug)]
@@ -232,30 +235,24 @@ macro_rules! in_drafts {
 measures!(in_drafts);
 
 /// Pattern of the measures that are not the value of one coordinate, which a driver could prescribe.
-macro_rules! not_drivable {
-    () => {
-        MeasureKindDraft::Orientation { .. }
-            | MeasureKindDraft::TransmissionAngle { .. }
-            | MeasureKindDraft::Velocity { .. }
-            | MeasureKindDraft::AngularVelocity { .. }
-            | MeasureKindDraft::Acceleration { .. }
-            | MeasureKindDraft::Curvature { .. }
-            | MeasureKindDraft::Rate { .. }
-            | MeasureKindDraft::Slope { .. }
-            | MeasureKindDraft::Dexterity { .. }
-            | MeasureKindDraft::Clearance { .. }
-            | MeasureKindDraft::Articulation { .. }
-            | MeasureKindDraft::Combination { .. }
-            | MeasureKindDraft::Camber { .. }
-            | MeasureKindDraft::DriverForce { .. }
-            | MeasureKindDraft::DriverPower { .. }
-            | MeasureKindDraft::Reaction { .. }
-            | MeasureKindDraft::SpringForce { .. }
-            | MeasureKindDraft::KineticEnergy { .. }
-            | MeasureKindDraft::ShakingForce { .. }
-            | MeasureKindDraft::ShakingMoment { .. }
-            | MeasureKindDraft::Compliance { .. }
-            | MeasureKindDraft::Axle { .. }
+macro_rules! pattern {
+    ([$($kinds:ident)*] NotDrivable $kind:ident $($rest:tt)*) => { pattern! { [$($kinds)* $kind] $($rest)* } };
+    ($kinds:tt Drivable $kind:ident $($rest:tt)*) => { pattern! { $kinds $($rest)* } };
+    ([$($kind:ident)*]) => {
+        macro_rules! not_drivable {
+            () => { $(MeasureKindDraft::$kind { .. } |)* MeasureKindDraft::Axle { .. } };
+        }
     };
 }
+macro_rules! by_drivability {
+    ($(
+        $(#[doc = $doc:literal])* $variant:ident $name:literal
+        [$class:ident, $drivable:ident, $($attributes:tt)*] { $($fields:tt)* } |$model:pat_param, $words:pat_param|
+            dimension: $dimension:expr, known: $known:expr, kinks: $kinks:expr, positive: $positive:expr,
+            words: $says:expr;
+    )*) => {
+        pattern! { [] $($drivable $variant)* }
+    };
+}
+measures!(by_drivability);
 pub(super) use not_drivable;

@@ -25,9 +25,10 @@ impl End {
     }
 }
 
-/// The kinds of changes: their fields in a draft and in a model, the quantity of their variable, the number or marker of
-/// the model that they change, and their description. A kind also has an effect (`design/change.rs`) and a check (`draft/check/design.rs`). The model uses its half of
-/// each line, the draft (`draft/change.rs`) the other, and the design the list.
+/// The kinds of changes: their fields in a draft and in a model, the quantity of their variable, the number or marker
+/// of the model that they change, and their description. A kind also has an effect (`design/change.rs`) and a check
+/// (`draft/check/design.rs`). The model uses its half of each line, the draft (`draft/change.rs`) the other, and the
+/// design the list.
 macro_rules! changes {
     ($declare:ident) => { $declare! {
     /// A hardpoint moves; markers, axes and points on it follow.

@@ -1,5 +1,7 @@
 //! Measures: numbers that follow from the motion.
 
+use std::f64::consts::{FRAC_PI_2, PI};
+
 use crate::expression::Expression;
 use crate::joint::Quantity;
 use crate::model::{
@@ -26,47 +28,57 @@ pub enum OutputSource {
     Point(PointId, usize),
 }
 
-/// The types of measures: the kind of their direction, if they have one, and whether it is the normal of a planar model
-/// by default; their fields, as written and as they mean in a model; their dimension, how much can be known of them,
-/// and how to say what they are. With a formula in `measure/formulas.rs` or `load/measures.rs` a type is complete. The
-/// model takes its half of each line, the draft (`draft/measure.rs`) the other.
+/// The types of measures: their class, whether a driver can prescribe them, the kind of their direction, if they have
+/// one, and whether it is the normal of a planar model by default; their fields, as written and as they mean in a
+/// model; their dimension, how much can be known of them, the values at which they have no derivative, the direction in
+/// which they are positive, and how to say what they are. With a formula in `measure/formulas.rs` or `load/measures.rs`
+/// a type is complete. The model takes its half of each line, the draft (`draft/measure.rs`) the other.
 macro_rules! measures {
     ($declare:ident) => { $declare! {
     /// A joint's coordinate, counted from the design configuration; of a rod or leg the whole length.
-    Coordinate "coordinate" [Polar, normal: false] {
+    Coordinate "coordinate" [Joint, Drivable, Polar, normal: false] {
         /// The joint's name.
         joint: String => JointId,
         /// Coordinate of the joint; may be left out if it has only one.
         coordinate: Option<String> => usize,
     } |m, MeasureWords { model, .. }|
-        m.joints[joint.0].kind.coordinates[*coordinate].quantity.into(),
-        counted_if(m.joints[joint.0].kind.coordinates[*coordinate].quantity == Quantity::Angle),
-        {
+        dimension: m.joints[joint.0].kind.coordinates[*coordinate].quantity.into(),
+        known: counted_if(m.joints[joint.0].kind.coordinates[*coordinate].quantity == Quantity::Angle),
+        kinks: SMOOTH,
+        positive: "",
+        words: {
             let joint = &model.joints[joint.0];
             format!("{} of joint `{}`", joint.kind.coordinates[*coordinate].name, joint.name)
         };
 
     /// Distance between two points.
-    Distance "distance" [Polar, normal: false] {
+    Distance "distance" [Pose, Drivable, Polar, normal: false] {
         /// From this point.
         from: PointRef => PointId,
         /// To this one.
         to: PointRef => PointId,
-    } |_, w| Dimension::LENGTH, POSITIONS, format!("distance from {} to {}", w.point(*from), w.point(*to));
+    } |_, w|
+        dimension: Dimension::LENGTH,
+        known: POSITIONS,
+        kinks: AT_ZERO,
+        positive: "",
+        words: format!("distance from {} to {}", w.point(*from), w.point(*to));
 
     /// Position of a point along a global direction.
-    Coordinates "position" [Polar, normal: false] {
+    Coordinates "position" [Pose, Drivable, Polar, normal: false] {
         /// The point.
         point: PointRef => PointId,
         /// The direction, of any length.
         along: Vec3 => Vec3,
     } |_, w|
-        Dimension::LENGTH,
-        POSITIONS,
-        format!("position of {} along {}", w.point(*point), (w.direction)(*along));
+        dimension: Dimension::LENGTH,
+        known: POSITIONS,
+        kinks: SMOOTH,
+        positive: "",
+        words: format!("position of {} along {}", w.point(*point), (w.direction)(*along));
 
     /// Angle from one direction to another: between them, 0 to 180 deg, or as seen along `about`.
-    Angle "angle" [Axial, normal: true] {
+    Angle "angle" [Pose, Drivable, Axial, normal: true] {
         /// From this direction.
         from: RayDraft => Ray,
         /// To this one.
@@ -74,86 +86,114 @@ macro_rules! measures {
         /// The direction, pointing at the viewer, about which the angle is counted, counter-clockwise positive.
         about: Option<Vec3> => Option<Vec3>,
     } |_, w|
-        Dimension::ANGLE,
-        counted_if(about.is_some()),
-        match about {
+        dimension: Dimension::ANGLE,
+        known: counted_if(about.is_some()),
+        kinks: if about.is_none() { &[0.0, PI] } else { SMOOTH },
+        positive: "",
+        words: match about {
             None => format!("angle between {} and {}", w.ray(from), w.ray(to)),
             Some(n) => format!("angle from {} to {} about {}", w.ray(from), w.ray(to), (w.direction)(*n)),
         };
 
     /// Orientation of a body, as one of three angles.
-    Orientation "orientation" [Axial, normal: false] {
+    Orientation "orientation" [Pose, NotDrivable, Axial, normal: false] {
         /// The body's name.
         body: String => BodyId,
         /// The angle.
         angle: OrientationAngle => OrientationAngle,
         /// The body whose frame it is turned against. Default: the global axes.
         relative_to: Option<String> => Option<BodyId>,
-    } |_, w| Dimension::ANGLE, counted_if(angle.is_counted()), match relative_to {
-        Some(other) => format!("{} of `{}` relative to `{}`", angle.words(), w.body(*body), w.body(*other)),
-        None => format!("{} of `{}`", angle.words(), w.body(*body)),
-    };
+    } |_, w|
+        dimension: Dimension::ANGLE,
+        known: counted_if(angle.is_counted()),
+        kinks: SMOOTH,
+        positive: "",
+        words: match relative_to {
+            Some(other) => format!("{} of `{}` relative to `{}`", angle.words(), w.body(*body), w.body(*other)),
+            None => format!("{} of `{}`", angle.words(), w.body(*body)),
+        };
 
     /// Angle between two lines, 0 to 90 deg.
-    TransmissionAngle "transmission_angle" [Polar, normal: false] {
+    TransmissionAngle "transmission_angle" [Pose, NotDrivable, Polar, normal: false] {
         /// Along this direction.
         from: RayDraft => Ray,
         /// And this one.
         to: RayDraft => Ray,
     } |_, w|
-        Dimension::ANGLE,
-        POSITIONS,
-        format!("angle between the lines along {} and {}, at most 90 deg", w.ray(from), w.ray(to));
+        dimension: Dimension::ANGLE,
+        known: POSITIONS,
+        kinks: &[0.0, FRAC_PI_2],
+        positive: "",
+        words: format!("angle between the lines along {} and {}, at most 90 deg", w.ray(from), w.ray(to));
 
     /// Velocity of a point.
-    Velocity "velocity" [Polar, normal: false] {
+    Velocity "velocity" [Pose, NotDrivable, Polar, normal: false] {
         /// The point.
         point: PointRef => PointId,
         /// The direction of the component, of any length. Default: the magnitude.
         along: Option<Vec3> => Option<Vec3>,
-    } |_, w| Dimension::LENGTH.rate(1), moving(2), w.component("velocity", *point, *along);
+    } |_, w|
+        dimension: Dimension::LENGTH.rate(1),
+        known: moving(2),
+        kinks: magnitude_if(along.is_none()),
+        positive: "",
+        words: w.component("velocity", *point, *along);
 
     /// Angular velocity of a body.
-    AngularVelocity "angular_velocity" [Axial, normal: true] {
+    AngularVelocity "angular_velocity" [Pose, NotDrivable, Axial, normal: true] {
         /// The body's name.
         body: String => BodyId,
         /// The direction of the component, of any length. Default: the magnitude.
         along: Option<Vec3> => Option<Vec3>,
-    } |_, w| Dimension::ANGLE.rate(1), moving(2), match along {
-        Some(n) => format!("angular velocity of `{}` about {}", w.body(*body), (w.direction)(*n)),
-        None => format!("magnitude of the angular velocity of `{}`", w.body(*body)),
-    };
+    } |_, w|
+        dimension: Dimension::ANGLE.rate(1),
+        known: moving(2),
+        kinks: magnitude_if(along.is_none()),
+        positive: "",
+        words: match along {
+            Some(n) => format!("angular velocity of `{}` about {}", w.body(*body), (w.direction)(*n)),
+            None => format!("magnitude of the angular velocity of `{}`", w.body(*body)),
+        };
 
     /// Acceleration of a point.
-    Acceleration "acceleration" [Polar, normal: false] {
+    Acceleration "acceleration" [Pose, NotDrivable, Polar, normal: false] {
         /// The point.
         point: PointRef => PointId,
         /// The direction of the component, of any length. Default: the magnitude.
         along: Option<Vec3> => Option<Vec3>,
-    } |_, w| Dimension::LENGTH.rate(2), moving(1), w.component("acceleration", *point, *along);
+    } |_, w|
+        dimension: Dimension::LENGTH.rate(2),
+        known: moving(1),
+        kinks: magnitude_if(along.is_none()),
+        positive: "",
+        words: w.component("acceleration", *point, *along);
 
     /// Curvature of a point's path.
-    Curvature "curvature" [Axial, normal: false] {
+    Curvature "curvature" [Pose, NotDrivable, Axial, normal: false] {
         /// The point.
         point: PointRef => PointId,
         /// The direction, pointing at the viewer, seen along which a turn to the left is positive. Default: all are.
         about: Option<Vec3> => Option<Vec3>,
     } |_, w|
-        Dimension::NUMBER.over(Dimension::LENGTH),
-        moving(1),
-        format!("curvature of the path of {}", w.point(*point));
+        dimension: Dimension::NUMBER.over(Dimension::LENGTH),
+        known: moving(1),
+        kinks: magnitude_if(about.is_none()),
+        positive: "",
+        words: format!("curvature of the path of {}", w.point(*point));
 
     /// Time derivative of another measure.
-    Rate "rate" [Polar, normal: false] {
+    Rate "rate" [Pose, NotDrivable, Polar, normal: false] {
         /// The name of the measure, or `POINT.x`.
         of: String => OutputSource,
     } |m, w|
-        m.dimension(*of).rate(1),
-        moving(m.known(*of).orders.saturating_sub(1)),
-        format!("rate of {}", w.output(*of));
+        dimension: m.dimension(*of).rate(1),
+        known: moving(m.known(*of).orders.saturating_sub(1)),
+        kinks: SMOOTH,
+        positive: "",
+        words: format!("rate of {}", w.output(*of));
 
     /// Derivative of one measure by another while one driver moves, alone or with others, such as a motion ratio.
-    Slope "slope" [Polar, normal: false] {
+    Slope "slope" [Slope, NotDrivable, Polar, normal: false] {
         /// The measure, or `POINT.x`, that changes.
         of: String => OutputSource,
         /// Over this one.
@@ -164,21 +204,30 @@ macro_rules! measures {
         together: Option<Vec<String>> => Option<Vec<DriverId>>,
         /// Drivers that move with it, each by the opposite amount: the other wheel in roll.
         opposed: Option<Vec<String>> => Option<Vec<DriverId>>,
-    } |m, w| m.dimension(*of).over(m.dimension(*over)), moving(1), {
-        let name = |d: &DriverId| format!("`{}`", w.model.drivers[d.0].name);
-        let list = |drivers: &Option<Vec<DriverId>>, sign: &str| -> String {
-            drivers.iter().flatten().map(|d| format!(" {sign} {}", name(d))).collect()
+    } |m, w|
+        dimension: m.dimension(*of).over(m.dimension(*over)),
+        known: OF_STEP,
+        kinks: SMOOTH,
+        positive: {
+            let (direction, travel) = (m.positive(*of), WheelMeasure::WheelTravel);
+            let is_in_bump = !direction.is_empty() && m.type_of(*over) == travel.name();
+            if is_in_bump { format!("{direction} in {}", travel.positive()) } else { String::new() }
+        },
+        words: {
+            let name = |d: &DriverId| format!("`{}`", w.model.drivers[d.0].name);
+            let list = |drivers: &Option<Vec<DriverId>>, sign: &str| -> String {
+                drivers.iter().flatten().map(|d| format!(" {sign} {}", name(d))).collect()
+            };
+            let (with, against) = (list(together, "and"), list(opposed, "against"));
+            let moving = if with.is_empty() && against.is_empty() { "alone moves" } else { "move" };
+            let drivers = format!("{}{with}{against}", name(driver));
+            let word = if moving == "move" { "drivers" } else { "driver" };
+            format!("{} over {} while {word} {drivers} {moving}", w.output(*of), w.output(*over))
         };
-        let (with, against) = (list(together, "and"), list(opposed, "against"));
-        let moving = if with.is_empty() && against.is_empty() { "alone moves" } else { "move" };
-        let drivers = format!("{}{with}{against}", name(driver));
-        let word = if moving == "move" { "drivers" } else { "driver" };
-        format!("{} over {} while {word} {drivers} {moving}", w.output(*of), w.output(*over))
-    };
 
     /// Dexterity: how the velocities of points on a body follow those of drivers, by the singular values of their
     /// Jacobian.
-    Dexterity "dexterity" [Polar, normal: false] {
+    Dexterity "dexterity" [Slope, NotDrivable, Polar, normal: false] {
         /// Points of the body: one for its translation, two or three apart for its rotation too.
         points: Vec<PointRef> => Vec<PointId>,
         /// Drivers that move, each alone, all in lengths or all in angles. Default: all.
@@ -186,84 +235,115 @@ macro_rules! measures {
         /// Quantity taken from the singular values. Default: `inverse_condition`.
         value: Option<JacobianValue> => JacobianValue,
     } |m, w|
-        match (value, drivers.first()) {
+        dimension: match (value, drivers.first()) {
             (JacobianValue::LeastGain | JacobianValue::GreatestGain, Some(driver)) => {
                 Dimension::LENGTH.over(m.driven(&m.drivers[driver.0]).quantity.into())
             }
             (JacobianValue::LeastGain | JacobianValue::GreatestGain, None)
             | (JacobianValue::InverseCondition, _) => Dimension::NUMBER,
         },
-        moving(1),
-        {
+        known: OF_STEP,
+        kinks: match value {
+            JacobianValue::InverseCondition | JacobianValue::LeastGain => AT_ZERO,
+            JacobianValue::GreatestGain => SMOOTH,
+        },
+        positive: "",
+        words: {
             let points: Vec<String> = points.iter().map(|p| w.point(*p)).collect();
             format!("{} of the velocities of {} by the drivers", value.words(), points.join(", "))
         };
 
     /// A formula over other measures.
-    Combination "expression" [Polar, normal: false] {
+    Combination "expression" [Pose, NotDrivable, Polar, normal: false] {
         /// Like `front_left.toe + front_right.toe`; lengths are in the file's unit, angles in rad.
         expression: Expression => Combination,
     } |m, _|
-        expression.dimension,
-        expression.sources().map(|s| m.known(s)).fold(POSITIONS, |all, one| KnownOrders {
+        dimension: expression.dimension,
+        known: expression.sources().map(|s| m.known(s)).fold(POSITIONS, |all, one| KnownOrders {
             orders: all.orders.min(one.orders),
             by_position: all.by_position && one.by_position,
             ..all
         }),
-        expression.text().into();
+        kinks: magnitude_if(expression.expression.is_magnitude()),
+        positive: "",
+        words: expression.text().into();
 
     /// Least distance of the pairs of a clearance, negative where shapes overlap.
-    Clearance "clearance" [Polar, normal: false] {
+    Clearance "clearance" [Pose, NotDrivable, Polar, normal: false] {
         /// The clearance's name.
         of: String => ClearanceId,
-    } |_, w| Dimension::LENGTH, POSITIONS, format!("least distance of clearance `{}`", w.model.clearances[of.0].name);
+    } |_, w|
+        dimension: Dimension::LENGTH,
+        known: POSITIONS,
+        kinks: SMOOTH,
+        positive: "",
+        words: format!("least distance of clearance `{}`", w.model.clearances[of.0].name);
 
     /// Angle between the axis of a joint on its two bodies, or between its shafts; without an axis the whole rotation.
-    Articulation "articulation" [Polar, normal: false] {
+    Articulation "articulation" [Joint, NotDrivable, Polar, normal: false] {
         /// The joint's name.
         joint: String => JointId,
         /// Direction in the design configuration that is fixed in both bodies, in place of the joint's axis: the stud
         /// of a ball joint.
         axis: Option<DirectionDraft> => Option<Direction>,
     } |_, MeasureWords { model, .. }|
-        Dimension::ANGLE,
-        POSITIONS,
-        format!("articulation of joint `{}`", model.joints[joint.0].name);
+        dimension: Dimension::ANGLE,
+        known: POSITIONS,
+        kinks: &[0.0, PI],
+        positive: "",
+        words: format!("articulation of joint `{}`", model.joints[joint.0].name);
 
     /// Toe of a wheel, positive for toe-in. It is a left wheel where its spin axis points to +y in the design
     /// configuration, else a right one.
-    Toe "toe" [Polar, normal: false] {
+    Toe "toe" [Pose, Drivable, Polar, normal: false] {
         /// The body that the wheel turns on.
         body: String => BodyId,
         /// The wheel's spin axis in the design configuration, pointing outboard.
         spin_axis: DirectionDraft => Direction,
-    } |_, w| Dimension::ANGLE, POSITIONS, w.of_axis("toe", *body, spin_axis);
+    } |_, w|
+        dimension: Dimension::ANGLE,
+        known: POSITIONS,
+        kinks: SMOOTH,
+        positive: WheelMeasure::Toe.positive(),
+        words: w.of_axis("toe", *body, spin_axis);
 
     /// Camber of a wheel, positive where its top leans outboard.
-    Camber "camber" [Polar, normal: false] {
+    Camber "camber" [Pose, NotDrivable, Polar, normal: false] {
         /// The body that the wheel turns on.
         body: String => BodyId,
         /// The wheel's spin axis in the design configuration, pointing outboard.
         spin_axis: DirectionDraft => Direction,
-    } |_, w| Dimension::ANGLE, POSITIONS, w.of_axis("camber", *body, spin_axis);
+    } |_, w|
+        dimension: Dimension::ANGLE,
+        known: POSITIONS,
+        kinks: SMOOTH,
+        positive: WheelMeasure::Camber.positive(),
+        words: w.of_axis("camber", *body, spin_axis);
 
     /// Force or moment that a driver needs; positive where it works while what it drives grows.
-    DriverForce "driver_force" [Polar, normal: false] {
+    DriverForce "driver_force" [Load, NotDrivable, Polar, normal: false] {
         /// The driver. Default: the only one.
         driver: Option<String> => DriverId,
-    } |m, w| m.force_on(&m.drivers[driver.0]), moving(1), format!("force of driver `{}`", w.model.drivers[driver.0].name);
+    } |m, w|
+        dimension: m.force_on(&m.drivers[driver.0]),
+        known: OF_STEP,
+        kinks: SMOOTH,
+        positive: "",
+        words: format!("force of driver `{}`", w.model.drivers[driver.0].name);
 
     /// Power that a driver gives the mechanism.
-    DriverPower "driver_power" [Polar, normal: false] {
+    DriverPower "driver_power" [Load, NotDrivable, Polar, normal: false] {
         /// The driver. Default: the only one.
         driver: Option<String> => DriverId,
     } |_, w|
-        Dimension::MOMENT.rate(1),
-        moving(1),
-        format!("power of driver `{}`", w.model.drivers[driver.0].name);
+        dimension: Dimension::MOMENT.rate(1),
+        known: moving(1),
+        kinks: SMOOTH,
+        positive: "",
+        words: format!("power of driver `{}`", w.model.drivers[driver.0].name);
 
     /// Force or moment that a joint puts on one of its bodies, with that of drivers on its coordinates.
-    Reaction "reaction" [Polar, normal: false] {
+    Reaction "reaction" [Load, NotDrivable, Polar, normal: false] {
         /// The joint.
         joint: String => JointId,
         /// Component of the reaction.
@@ -273,49 +353,68 @@ macro_rules! measures {
         /// Along which axes components are taken. Default: the global ones.
         axes: Option<Axes> => Option<Axes>,
     } |_, MeasureWords { model, .. }|
-        if part.is_moment() { Dimension::MOMENT } else { Dimension::FORCE },
-        moving(1),
-        format!("{} of joint `{}`", part.words(), model.joints[joint.0].name);
+        dimension: if part.is_moment() { Dimension::MOMENT } else { Dimension::FORCE },
+        known: OF_STEP,
+        kinks: magnitude_if(part.is_magnitude()),
+        positive: "",
+        words: format!("{} of joint `{}`", part.words(), model.joints[joint.0].name);
 
     /// Tension of a spring, force or moment of one on a joint's coordinate, given force along its direction, otherwise
     /// the size of the force.
-    SpringForce "spring_force" [Polar, normal: false] {
+    SpringForce "spring_force" [Load, NotDrivable, Polar, normal: false] {
         /// The force's name.
         force: String => ElementId,
     } |m, w|
-        m.elements[force.0].kind.force(m).map_or(Dimension::FORCE, |force| force.dimension),
-        moving(1),
-        format!("force of `{}`", w.model.elements[force.0].name);
+        dimension: m.elements[force.0].kind.force(m).map_or(Dimension::FORCE, |force| force.dimension),
+        known: OF_STEP,
+        kinks: AT_ZERO,
+        positive: "",
+        words: format!("force of `{}`", w.model.elements[force.0].name);
 
     /// Kinetic energy of a body, or of all.
-    KineticEnergy "kinetic_energy" [Polar, normal: false] {
+    KineticEnergy "kinetic_energy" [Load, NotDrivable, Polar, normal: false] {
         /// The body. Default: all.
         body: Option<String> => Option<BodyId>,
-    } |_, w| Dimension::MOMENT, moving(1), match body {
-        Some(body) => format!("kinetic energy of `{}`", w.body(*body)),
-        None => "kinetic energy".into(),
-    };
+    } |_, w|
+        dimension: Dimension::MOMENT,
+        known: moving(1),
+        kinks: SMOOTH,
+        positive: "",
+        words: match body {
+            Some(body) => format!("kinetic energy of `{}`", w.body(*body)),
+            None => "kinetic energy".into(),
+        };
 
     /// Force that the mechanism puts on ground.
-    ShakingForce "shaking_force" [Polar, normal: false] {
+    ShakingForce "shaking_force" [Load, NotDrivable, Polar, normal: false] {
         /// The direction of the component, of any length. Default: the magnitude.
         along: Option<Vec3> => Option<Vec3>,
-    } |_, w| Dimension::FORCE, moving(1), match along {
-        Some(n) => format!("force on ground along {}", (w.direction)(*n)),
-        None => "magnitude of the force on ground".into(),
-    };
+    } |_, w|
+        dimension: Dimension::FORCE,
+        known: OF_STEP,
+        kinks: magnitude_if(along.is_none()),
+        positive: "",
+        words: match along {
+            Some(n) => format!("force on ground along {}", (w.direction)(*n)),
+            None => "magnitude of the force on ground".into(),
+        };
 
     /// Moment that the mechanism puts on ground.
-    ShakingMoment "shaking_moment" [Axial, normal: true] {
+    ShakingMoment "shaking_moment" [Load, NotDrivable, Axial, normal: true] {
         /// About this point.
         about: PointRef => PointId,
         /// The direction of the component, of any length. Default: the magnitude.
         along: Option<Vec3> => Option<Vec3>,
-    } |_, w| Dimension::MOMENT, moving(1), format!("moment on ground about {}", w.point(*about));
+    } |_, w|
+        dimension: Dimension::MOMENT,
+        known: OF_STEP,
+        kinks: magnitude_if(along.is_none()),
+        positive: "",
+        words: format!("moment on ground about {}", w.point(*about));
 
     /// Derivative of a measure by a force on a point, from the compliance of elastic joints, springs and bushings,
     /// linearised at every position.
-    Compliance "compliance" [Polar, normal: false] {
+    Compliance "compliance" [Compliance, NotDrivable, Polar, normal: false] {
         /// The measure, or `POINT.x`.
         of: String => OutputSource,
         /// The point that the force pushes.
@@ -329,9 +428,11 @@ macro_rules! measures {
         /// A driver that is released: it holds nothing, springs do. Default: all drivers hold.
         released: Option<String> => Option<DriverId>,
     } |m, w|
-        m.dimension(*of).over(force.map_or(Dimension::FORCE, |e| m.force_dimension(e))),
-        moving(1),
-        {
+        dimension: m.dimension(*of).over(force.map_or(Dimension::FORCE, |e| m.force_dimension(e))),
+        known: OF_STEP,
+        kinks: SMOOTH,
+        positive: "",
+        words: {
             let of_wheel = |wheel: WheelId| format!("the contact of wheel `{}`", w.model.wheels[wheel.0].name);
             let place = at.map(|p| w.point(p)).or_else(|| wheel.map(of_wheel)).unwrap_or_default();
             match (force, along) {
@@ -349,9 +450,12 @@ pub(crate) use measures;
 /// Measure types with references resolved to ids.
 macro_rules! in_models {
     ($(
-        $(#[doc = $doc:literal])* $variant:ident $name:literal [$vector:ident, normal: $normal:literal] {
+        $(#[doc = $doc:literal])* $variant:ident $name:literal
+        [$class:ident, $drivable:ident, $vector:ident, normal: $normal:literal] {
             $($(#[doc = $field_doc:literal])* $field:ident: $draft:ty => $type:ty),* $(,)?
-        } |$model:pat_param, $words:pat_param| $dimension:expr, $known:expr, $says:expr;
+        } |$model:pat_param, $words:pat_param|
+            dimension: $dimension:expr, known: $known:expr, kinks: $kinks:expr, positive: $positive:expr,
+            words: $says:expr;
     )*) => {
         /// Kind of a measure. Formulas and signs are in `docs/measures.md`.
         #[derive(Clone, Debug, PartialEq)]
@@ -371,6 +475,27 @@ macro_rules! in_models {
                 /// Measured quantity.
                 what: AxleMeasure,
             },
+        }
+
+        impl MeasureKind {
+            /// Values at which the measure has no derivative because the vector that it is the magnitude of is zero,
+            /// or two directions are parallel or perpendicular; empty for measures that are no magnitudes. The square
+            /// of the distance from such a value is smooth there.
+            pub fn kinks(&self) -> &'static [f64] {
+                match self {
+                    $(#[allow(unused_variables, reason = "kinks follow from some of its fields")]
+                    Self::$variant { $($field),* } => $kinks,)*
+                    Self::Wheel { .. } | Self::Axle { .. } => SMOOTH,
+                }
+            }
+
+            /// Outputs that the measure is made of.
+            pub fn sources(&self) -> Vec<OutputSource> {
+                match self {
+                    $(Self::$variant { $($field),* } => [$($field.outputs()),*].concat(),)*
+                    Self::Wheel { .. } | Self::Axle { .. } => Vec::new(),
+                }
+            }
         }
 
         impl Model {
@@ -410,8 +535,30 @@ macro_rules! in_models {
                 match &self.measures[k].kind {
                     $(#[allow(unused_variables, reason = "how much is known follows from some of its fields")]
                     MeasureKind::$variant { $($field),* } => { let $model = self; $known })*
-                    MeasureKind::Wheel { .. } | MeasureKind::Axle { .. } if self.depends_on_driver(k) => moving(1),
+                    MeasureKind::Wheel { .. } | MeasureKind::Axle { .. } if self.depends_on_driver(k) => OF_STEP,
                     MeasureKind::Wheel { .. } | MeasureKind::Axle { .. } => POSITIONS,
+                }
+            }
+
+            /// Direction in which an output is positive, in words; empty if there is no fixed one. A slope over wheel
+            /// travel has that of its measure in bump.
+            pub fn positive(&self, output: OutputSource) -> String {
+                match output {
+                    OutputSource::Measure(k) => self.positive_of(&self.measures[k].kind),
+                    // A model with wheels has vehicle axes, those of ISO 8855.
+                    OutputSource::Point(_, axis) if self.wheels.is_empty() => {
+                        format!("along +{}", ["x", "y", "z"][axis])
+                    }
+                    OutputSource::Point(_, axis) => ["forward", "to the left", "up"][axis].to_owned(),
+                }
+            }
+
+            fn positive_of(&self, kind: &MeasureKind) -> String {
+                match kind {
+                    $(#[allow(unused_variables, reason = "what is positive follows from some of its fields")]
+                    MeasureKind::$variant { $($field),* } => { let $model = self; String::from($positive) })*
+                    MeasureKind::Wheel { what, .. } => what.positive().to_owned(),
+                    MeasureKind::Axle { what, .. } => what.positive().to_owned(),
                 }
             }
 
@@ -423,6 +570,26 @@ macro_rules! in_models {
                         [wheel.bodies(self), self.moved_with(*wheel, *what).bodies(self)].concat()
                     }
                     MeasureKind::Axle { axle, .. } => self.axles[axle.0].wheels.map(|w| w.bodies(self)).concat(),
+                }
+            }
+
+            /// The directions fixed in bodies that a measure depends on, in the order of its fields: each is fixed in
+            /// the bodies that the measure names.
+            pub(crate) fn directions(&self, measure: &Measure) -> [Option<(BodyId, Direction)>; 2] {
+                let of_wheel = |wheel: WheelId| {
+                    let wheel = &self.wheels[wheel.0];
+                    Some((wheel.body, wheel.spin_axis))
+                };
+                let bodies = || self.bodies_of(measure);
+                match &measure.kind {
+                    $(MeasureKind::$variant { $($field),* } => {
+                        let mut found = [$($field.directions(&bodies)),*].concat().into_iter();
+                        [0, 1].map(|_| found.next().flatten())
+                    })*
+                    MeasureKind::Wheel { wheel, what } => {
+                        [of_wheel(*wheel), self.moved_with(*wheel, *what).and_then(of_wheel)]
+                    }
+                    MeasureKind::Axle { axle, .. } => self.axles[axle.0].wheels.map(of_wheel),
                 }
             }
 
@@ -446,151 +613,206 @@ macro_rules! in_models {
 
 measures!(in_models);
 
-/// Pattern of the measures that follow from the poses of bodies and their rates, but those of wheels and axles.
-macro_rules! of_bodies {
-    () => {
-        MeasureKind::Coordinate { .. }
-            | MeasureKind::Articulation { .. }
-            | $crate::model::of_bodies_but_joints!()
+/// Patterns of the measures by their classes.
+macro_rules! class_patterns {
+    ([$($joints:ident)*] [$($poses:ident)*] [$($loads:ident)*] Joint $kind:ident $($rest:tt)*) => {
+        class_patterns! { [$($joints)* $kind] [$($poses)*] [$($loads)*] $($rest)* }
+    };
+    ([$($joints:ident)*] [$($poses:ident)*] [$($loads:ident)*] Pose $kind:ident $($rest:tt)*) => {
+        class_patterns! { [$($joints)*] [$($poses)* $kind] [$($loads)*] $($rest)* }
+    };
+    ([$($joints:ident)*] [$($poses:ident)*] [$($loads:ident)*] Load $kind:ident $($rest:tt)*) => {
+        class_patterns! { [$($joints)*] [$($poses)*] [$($loads)* $kind] $($rest)* }
+    };
+    // Their matches name them.
+    ($joints:tt $poses:tt $loads:tt Slope $kind:ident $($rest:tt)*) => {
+        class_patterns! { $joints $poses $loads $($rest)* }
+    };
+    ($joints:tt $poses:tt $loads:tt Compliance $kind:ident $($rest:tt)*) => {
+        class_patterns! { $joints $poses $loads $($rest)* }
+    };
+    ([$($joint:ident)*] [$pose:ident $($poses:ident)*] [$load:ident $($loads:ident)*]) => {
+        /// Pattern of the measures that follow from the poses of bodies and their rates, but those of wheels and axles.
+        macro_rules! of_bodies {
+            () => { $(MeasureKind::$joint { .. } |)* $crate::model::of_bodies_but_joints!() };
+        }
+
+        /// Pattern of those of them that are no values of joints.
+        macro_rules! of_bodies_but_joints {
+            () => { MeasureKind::$pose { .. } $(| MeasureKind::$poses { .. })* };
+        }
+
+        /// Pattern of the measures that are loads: what drives the mechanism, or what its parts carry.
+        macro_rules! loads {
+            () => { MeasureKind::$load { .. } $(| MeasureKind::$loads { .. })* };
+        }
     };
 }
-pub(crate) use of_bodies;
-
-/// Pattern of those of them that are no values of joints.
-macro_rules! of_bodies_but_joints {
-    () => {
-        MeasureKind::Distance { .. }
-            | MeasureKind::Coordinates { .. }
-            | MeasureKind::Angle { .. }
-            | MeasureKind::Orientation { .. }
-            | MeasureKind::TransmissionAngle { .. }
-            | MeasureKind::Velocity { .. }
-            | MeasureKind::AngularVelocity { .. }
-            | MeasureKind::Acceleration { .. }
-            | MeasureKind::Curvature { .. }
-            | MeasureKind::Rate { .. }
-            | MeasureKind::Combination { .. }
-            | MeasureKind::Toe { .. }
-            | MeasureKind::Camber { .. }
-            | MeasureKind::Clearance { .. }
+macro_rules! in_classes {
+    ($(
+        $(#[doc = $doc:literal])* $variant:ident $name:literal
+        [$class:ident, $($attributes:tt)*] { $($fields:tt)* } |$model:pat_param, $words:pat_param|
+            dimension: $dimension:expr, known: $known:expr, kinks: $kinks:expr, positive: $positive:expr,
+            words: $says:expr;
+    )*) => {
+        class_patterns! { [] [] [] $($class $variant)* }
     };
 }
-pub(crate) use of_bodies_but_joints;
+measures!(in_classes);
+pub(crate) use {loads, of_bodies, of_bodies_but_joints};
 
-/// Pattern of the measures that are loads: what drives the mechanism, or what its parts carry.
-macro_rules! loads {
-    () => {
-        MeasureKind::DriverForce { .. }
-            | MeasureKind::DriverPower { .. }
-            | MeasureKind::Reaction { .. }
-            | MeasureKind::SpringForce { .. }
-            | MeasureKind::KineticEnergy { .. }
-            | MeasureKind::ShakingForce { .. }
-            | MeasureKind::ShakingMoment { .. }
-    };
-}
-pub(crate) use loads;
-
-/// Bodies that a field of a measure names, or on which the named items are.
-trait OnBodies {
+/// Parts of a model that a field of a measure names.
+trait References {
+    /// Bodies that it names, or on which the named items are.
     fn bodies(&self, _model: &Model) -> Vec<BodyId> {
+        Vec::new()
+    }
+
+    /// Outputs that it names.
+    fn outputs(&self) -> Vec<OutputSource> {
+        Vec::new()
+    }
+
+    /// Directions that it fixes in bodies; `bodies` are those of the measure.
+    fn directions(&self, _bodies: &dyn Fn() -> Vec<BodyId>) -> Vec<Option<(BodyId, Direction)>> {
         Vec::new()
     }
 }
 
-impl OnBodies for BodyId {
+impl References for BodyId {
     fn bodies(&self, _: &Model) -> Vec<BodyId> {
         vec![*self]
     }
 }
 
-impl OnBodies for JointId {
+impl References for JointId {
     fn bodies(&self, model: &Model) -> Vec<BodyId> {
         model.joints[self.0].bodies.to_vec()
     }
 }
 
-impl OnBodies for PointId {
+impl References for PointId {
     fn bodies(&self, model: &Model) -> Vec<BodyId> {
         vec![model.points[self.0].body]
     }
 }
 
-impl OnBodies for WheelId {
+impl References for WheelId {
     fn bodies(&self, model: &Model) -> Vec<BodyId> {
         vec![model.wheels[self.0].body]
     }
 }
 
-impl OnBodies for Vec<PointId> {
+impl References for Vec<PointId> {
     fn bodies(&self, model: &Model) -> Vec<BodyId> {
         self.iter().map(|p| model.points[p.0].body).collect()
     }
 }
 
-impl OnBodies for Option<PointId> {
+impl References for Option<PointId> {
     fn bodies(&self, model: &Model) -> Vec<BodyId> {
         self.map_or_else(Vec::new, |p| p.bodies(model))
     }
 }
 
-impl OnBodies for Option<WheelId> {
+impl References for Option<WheelId> {
     fn bodies(&self, model: &Model) -> Vec<BodyId> {
         self.map_or_else(Vec::new, |w| w.bodies(model))
     }
 }
 
-impl OnBodies for ClearanceId {
+impl References for ClearanceId {
     fn bodies(&self, model: &Model) -> Vec<BodyId> {
         let pairs = &model.clearances[self.0].pairs;
         pairs.iter().flat_map(|pair| pair.shapes).flat_map(|s| model.shapes[s.0].bodies(model)).collect()
     }
 }
 
-impl OnBodies for Ray {
+impl References for Ray {
     fn bodies(&self, model: &Model) -> Vec<BodyId> {
         match self {
             Self::Between(points) => points.map(|p| p.bodies(model)).concat(),
             Self::Fixed { body, .. } => vec![*body],
         }
     }
+
+    fn directions(&self, _: &dyn Fn() -> Vec<BodyId>) -> Vec<Option<(BodyId, Direction)>> {
+        match *self {
+            Self::Between(_) => vec![None],
+            Self::Fixed { body, axis } => vec![Some((body, axis))],
+        }
+    }
 }
 
-impl OnBodies for Option<BodyId> {
+impl References for Option<BodyId> {
     fn bodies(&self, _: &Model) -> Vec<BodyId> {
         self.iter().copied().collect()
     }
 }
 
-impl OnBodies for usize {}
-impl OnBodies for ElementId {}
-impl OnBodies for Option<ElementId> {}
-impl OnBodies for ReactionPart {}
-impl OnBodies for Option<Axes> {}
-impl OnBodies for OrientationAngle {}
-impl OnBodies for Vec3 {}
-impl OnBodies for Option<Vec3> {}
-impl OnBodies for Direction {}
-impl OnBodies for Option<Direction> {}
-impl OnBodies for DriverId {}
-impl OnBodies for Option<DriverId> {}
-impl OnBodies for Vec<DriverId> {}
-impl OnBodies for Option<Vec<DriverId>> {}
-impl OnBodies for JacobianValue {}
-impl OnBodies for OutputSource {}
-impl OnBodies for Combination {}
+impl References for Direction {
+    fn directions(&self, bodies: &dyn Fn() -> Vec<BodyId>) -> Vec<Option<(BodyId, Direction)>> {
+        bodies().into_iter().map(|body| Some((body, *self))).collect()
+    }
+}
+
+impl References for Option<Direction> {
+    fn directions(&self, bodies: &dyn Fn() -> Vec<BodyId>) -> Vec<Option<(BodyId, Direction)>> {
+        self.map_or_else(Vec::new, |direction| direction.directions(bodies))
+    }
+}
+
+impl References for OutputSource {
+    fn outputs(&self) -> Vec<OutputSource> {
+        vec![*self]
+    }
+}
+
+impl References for Combination {
+    fn outputs(&self) -> Vec<OutputSource> {
+        self.sources().collect()
+    }
+}
+
+impl References for usize {}
+impl References for ElementId {}
+impl References for Option<ElementId> {}
+impl References for ReactionPart {}
+impl References for Option<Axes> {}
+impl References for OrientationAngle {}
+impl References for Vec3 {}
+impl References for Option<Vec3> {}
+impl References for DriverId {}
+impl References for Option<DriverId> {}
+impl References for Vec<DriverId> {}
+impl References for Option<Vec<DriverId>> {}
+impl References for JacobianValue {}
+
+/// Values at which a measure without kinks has none.
+const SMOOTH: &[f64] = &[];
+/// Value at which a magnitude has a kink.
+const AT_ZERO: &[f64] = &[0.0];
+
+/// Kinks of a measure that is a magnitude, or is not.
+const fn magnitude_if(is_magnitude: bool) -> &'static [f64] {
+    if is_magnitude { AT_ZERO } else { SMOOTH }
+}
 
 /// All of an output that follows from positions is known.
 const POSITIONS: KnownOrders = counted_if(false);
 
 /// The same of an angle that is counted through whole turns, or is not.
 const fn counted_if(counted: bool) -> KnownOrders {
-    KnownOrders { orders: 3, by_position: true, counted }
+    KnownOrders { orders: 3, by_position: true, counted, is_rate: false }
 }
 
-/// Known orders of a quantity that moves: the first `orders` of value, rate and acceleration.
+/// The value alone is known of loads and of derivatives along drivers and forces: each step is solved for them.
+const OF_STEP: KnownOrders = KnownOrders { orders: 1, by_position: false, counted: false, is_rate: false };
+
+/// Known orders of a quantity that follows from velocities or accelerations: the first `orders` of value, rate and
+/// acceleration.
 fn moving(orders: usize) -> KnownOrders {
-    KnownOrders { orders, by_position: false, counted: false }
+    KnownOrders { orders, by_position: false, counted: false, is_rate: true }
 }
 
 /// Builder of the descriptions of measures.
@@ -678,95 +900,6 @@ impl MeasureKind {
         self.kinks().iter().map(|kink| (value - kink).abs()).reduce(f64::min)
     }
 
-    /// Values at which the measure has no derivative because the vector that it is the magnitude of is zero, or two
-    /// directions are parallel or perpendicular; empty for measures that are no magnitudes. The square of the distance
-    /// from such a value is smooth there.
-    pub fn kinks(&self) -> &'static [f64] {
-        use std::f64::consts::{FRAC_PI_2, PI};
-        match self {
-            Self::Angle { about: None, .. } | Self::Articulation { .. } => &[0.0, PI],
-            Self::TransmissionAngle { .. } => &[0.0, FRAC_PI_2],
-            Self::Dexterity { value: JacobianValue::InverseCondition | JacobianValue::LeastGain, .. }
-            | Self::Distance { .. }
-            | Self::SpringForce { .. }
-            | Self::Velocity { along: None, .. }
-            | Self::AngularVelocity { along: None, .. }
-            | Self::Acceleration { along: None, .. }
-            | Self::Curvature { about: None, .. }
-            | Self::ShakingForce { along: None }
-            | Self::ShakingMoment { along: None, .. } => &[0.0],
-            Self::Reaction { part, .. } => match part {
-                ReactionPart::Force | ReactionPart::Radial | ReactionPart::Moment | ReactionPart::Bending => {
-                    &[0.0]
-                }
-                ReactionPart::ForceAlong(_)
-                | ReactionPart::Axial
-                | ReactionPart::MomentAbout(_)
-                | ReactionPart::Torque => &[],
-            },
-            Self::Combination { expression } if expression.expression.is_magnitude() => &[0.0],
-            Self::Combination { .. }
-            | Self::Coordinate { .. }
-            | Self::Coordinates { .. }
-            | Self::Angle { about: Some(_), .. }
-            | Self::Orientation { .. }
-            | Self::Velocity { along: Some(_), .. }
-            | Self::AngularVelocity { along: Some(_), .. }
-            | Self::Acceleration { along: Some(_), .. }
-            | Self::Curvature { about: Some(_), .. }
-            | Self::Rate { .. }
-            | Self::Slope { .. }
-            | Self::Dexterity { value: JacobianValue::GreatestGain, .. }
-            | Self::Clearance { .. }
-            | Self::Toe { .. }
-            | Self::Camber { .. }
-            | Self::DriverForce { .. }
-            | Self::DriverPower { .. }
-            | Self::KineticEnergy { .. }
-            | Self::ShakingForce { along: Some(_) }
-            | Self::ShakingMoment { along: Some(_), .. }
-            | Self::Compliance { .. }
-            | Self::Wheel { .. }
-            | Self::Axle { .. } => &[],
-        }
-    }
-
-    /// Direction in which it is positive, in words; empty if there is no fixed one. A slope over wheel travel has that
-    /// of its measure in bump.
-    pub fn positive(&self, model: &Model) -> String {
-        let words = match self {
-            Self::Wheel { what, .. } => what.positive(),
-            Self::Axle { what, .. } => what.positive(),
-            Self::Toe { .. } => WheelMeasure::Toe.positive(),
-            Self::Camber { .. } => WheelMeasure::Camber.positive(),
-            Self::Slope { of, over, .. } => {
-                let (direction, travel) = (model.positive(*of), WheelMeasure::WheelTravel);
-                if direction.is_empty() || model.type_of(*over) != travel.name() {
-                    return String::new();
-                }
-                return format!("{direction} in {}", travel.positive());
-            }
-            Self::Coordinate { .. }
-            | Self::Distance { .. }
-            | Self::Coordinates { .. }
-            | Self::Angle { .. }
-            | Self::Orientation { .. }
-            | Self::TransmissionAngle { .. }
-            | Self::Velocity { .. }
-            | Self::AngularVelocity { .. }
-            | Self::Acceleration { .. }
-            | Self::Curvature { .. }
-            | Self::Rate { .. }
-            | Self::Combination { .. }
-            | Self::Clearance { .. }
-            | Self::Articulation { .. }
-            | Self::Dexterity { .. }
-            | Self::Compliance { .. }
-            | loads!() => "",
-        };
-        words.to_owned()
-    }
-
     /// Joint whose coordinate or articulation it is.
     pub fn joint_value(&self) -> Option<JointId> {
         match self {
@@ -823,33 +956,6 @@ impl MeasureKind {
         }
     }
 
-    /// Outputs that the measure is made of.
-    pub fn sources(&self) -> Vec<OutputSource> {
-        match self {
-            Self::Rate { of } | Self::Compliance { of, .. } => vec![*of],
-            Self::Slope { of, over, .. } => vec![*of, *over],
-            Self::Combination { expression } => expression.sources().collect(),
-            Self::Coordinate { .. }
-            | Self::Distance { .. }
-            | Self::Coordinates { .. }
-            | Self::Angle { .. }
-            | Self::Orientation { .. }
-            | Self::TransmissionAngle { .. }
-            | Self::Velocity { .. }
-            | Self::AngularVelocity { .. }
-            | Self::Acceleration { .. }
-            | Self::Curvature { .. }
-            | Self::Dexterity { .. }
-            | Self::Clearance { .. }
-            | Self::Articulation { .. }
-            | Self::Toe { .. }
-            | Self::Camber { .. }
-            | Self::Wheel { .. }
-            | Self::Axle { .. }
-            | loads!() => Vec::new(),
-        }
-    }
-
     /// True if it is a load: what drives the mechanism, or what its parts carry.
     pub fn is_load(&self) -> bool {
         match self {
@@ -886,6 +992,14 @@ pub enum ReactionPart {
 }
 
 impl ReactionPart {
+    /// True for the magnitude of a vector, or of the part of it across the joint's axis.
+    const fn is_magnitude(self) -> bool {
+        match self {
+            Self::Force | Self::Radial | Self::Moment | Self::Bending => true,
+            Self::ForceAlong(_) | Self::Axial | Self::MomentAbout(_) | Self::Torque => false,
+        }
+    }
+
     /// As model files write them, and what they are.
     pub const WORDS: &[(&str, &str)] = &[
         ("force", "The size of its force."),
@@ -1151,6 +1265,8 @@ pub struct KnownOrders {
     pub by_position: bool,
     /// True if it is an angle that is counted through whole turns along the motion.
     pub counted: bool,
+    /// True if it follows from velocities or accelerations, so that a mechanism at rest has none.
+    pub is_rate: bool,
 }
 
 impl Model {
@@ -1159,18 +1275,6 @@ impl Model {
         match output {
             OutputSource::Measure(k) => self.measures[k].name.clone(),
             OutputSource::Point(p, axis) => format!("{}.{}", self.points[p.0].name, ["x", "y", "z"][axis]),
-        }
-    }
-
-    /// Direction in which an output is positive, in words; empty if there is no fixed one.
-    pub fn positive(&self, output: OutputSource) -> String {
-        match output {
-            OutputSource::Measure(k) => self.measures[k].kind.positive(self),
-            // A model with wheels has vehicle axes, those of ISO 8855.
-            OutputSource::Point(_, axis) if self.wheels.is_empty() => {
-                format!("along +{}", ["x", "y", "z"][axis])
-            }
-            OutputSource::Point(_, axis) => ["forward", "to the left", "up"][axis].to_owned(),
         }
     }
 
@@ -1264,47 +1368,6 @@ impl Model {
         match direction {
             Direction::Along(u) => u,
             Direction::Through(a, b) => self.position(b) - self.position(a),
-        }
-    }
-
-    /// The directions fixed in bodies that a measure depends on.
-    pub(crate) fn directions(&self, measure: &Measure) -> [Option<(BodyId, Direction)>; 2] {
-        let of_wheel = |wheel: WheelId| {
-            let wheel = &self.wheels[wheel.0];
-            Some((wheel.body, wheel.spin_axis))
-        };
-        match measure.kind {
-            MeasureKind::Toe { body, spin_axis } | MeasureKind::Camber { body, spin_axis } => {
-                [Some((body, spin_axis)), None]
-            }
-            MeasureKind::Wheel { wheel, what } => {
-                [of_wheel(wheel), self.moved_with(wheel, what).and_then(of_wheel)]
-            }
-            MeasureKind::Axle { axle, .. } => self.axles[axle.0].wheels.map(of_wheel),
-            MeasureKind::Angle { from, to, .. } | MeasureKind::TransmissionAngle { from, to } => [from, to]
-                .map(|ray| match ray {
-                    Ray::Fixed { body, axis } => Some((body, axis)),
-                    Ray::Between(_) => None,
-                }),
-            MeasureKind::Articulation { joint, axis: Some(axis) } => {
-                self.joints[joint.0].bodies.map(|body| Some((body, axis)))
-            }
-            MeasureKind::Articulation { axis: None, .. }
-            | MeasureKind::Coordinate { .. }
-            | MeasureKind::Distance { .. }
-            | MeasureKind::Coordinates { .. }
-            | MeasureKind::Orientation { .. }
-            | MeasureKind::Velocity { .. }
-            | MeasureKind::AngularVelocity { .. }
-            | MeasureKind::Acceleration { .. }
-            | MeasureKind::Curvature { .. }
-            | MeasureKind::Rate { .. }
-            | MeasureKind::Slope { .. }
-            | MeasureKind::Dexterity { .. }
-            | MeasureKind::Clearance { .. }
-            | MeasureKind::Combination { .. }
-            | MeasureKind::Compliance { .. }
-            | loads!() => [None; 2],
         }
     }
 }

@@ -21,8 +21,8 @@ pub struct Metric {
     pub case: Option<CaseId>,
 }
 
-/// The reductions: what they hold besides the curve, name in model files, part of the curve, unit, whether the value has
-/// the direction of the output, and description. With the value of its curve (`take` in `run/metric.rs`) one is
+/// The reductions: what they hold besides the curve, name in model files, part of the curve, unit, whether the value
+/// has the direction of the output, and description. With the value of its curve (`take` in `run/metric.rs`) one is
 /// complete; one of a further integral has its formulas in `run/quadrature.rs`.
 macro_rules! reductions {
     ($(

@@ -743,7 +743,8 @@ fn slope_at<T: Real>(
     y.at(k, moved)[1] / x.at(k, moved)[1]
 }
 
-/// Value or slope where the abscissa is `at`, of a motion with one output time: a curve that is one point with its rates.
+/// Value or slope where the abscissa is `at`, of a motion with one output time: a curve that is one point with its
+/// rates.
 fn take_at_single_time<T: Real>(
     at: f64,
     is_slope: bool,

@@ -3,7 +3,7 @@
 use crate::draft::Section;
 use crate::joint::{DIRECTION_NAMES, DIRECTIONS, tied_directions};
 use crate::model::element::Compliance;
-use crate::model::{DriverId, Equilibrium, Joint, JointId, MeasureKind};
+use crate::model::{DriverId, Equilibrium, Joint, JointId, OutputSource};
 
 use super::{Checker, Here};
 
@@ -89,7 +89,7 @@ impl Checker<'_> {
             let name = &self.draft.measures[index].name;
             let Some(k) = self.model.measures.iter().position(|m| m.name == *name) else { continue };
             let here = Here { section: Section::Measures, index };
-            if is_rate(&self.model.measures[k].kind) {
+            if self.model.known(OutputSource::Measure(k)).is_rate {
                 let message = format!("measure `{name}` is a rate, and an equilibrium is at rest");
                 self.fault("HP0261", here.key("type"), message).help("remove it, or remove `equilibrium`");
             }
@@ -103,39 +103,5 @@ impl Checker<'_> {
                     .help("hold the driver, or remove the measure");
             }
         }
-    }
-}
-
-/// True for measures that depend on velocities or accelerations.
-fn is_rate(kind: &MeasureKind) -> bool {
-    match kind {
-        MeasureKind::Velocity { .. }
-        | MeasureKind::AngularVelocity { .. }
-        | MeasureKind::Acceleration { .. }
-        | MeasureKind::Curvature { .. }
-        | MeasureKind::Rate { .. }
-        | MeasureKind::DriverPower { .. }
-        | MeasureKind::KineticEnergy { .. } => true,
-        MeasureKind::Slope { .. }
-        | MeasureKind::Dexterity { .. }
-        | MeasureKind::Coordinate { .. }
-        | MeasureKind::Distance { .. }
-        | MeasureKind::Coordinates { .. }
-        | MeasureKind::Angle { .. }
-        | MeasureKind::Orientation { .. }
-        | MeasureKind::TransmissionAngle { .. }
-        | MeasureKind::Clearance { .. }
-        | MeasureKind::Articulation { .. }
-        | MeasureKind::Combination { .. }
-        | MeasureKind::Camber { .. }
-        | MeasureKind::Toe { .. }
-        | MeasureKind::DriverForce { .. }
-        | MeasureKind::Reaction { .. }
-        | MeasureKind::SpringForce { .. }
-        | MeasureKind::ShakingForce { .. }
-        | MeasureKind::ShakingMoment { .. }
-        | MeasureKind::Compliance { .. }
-        | MeasureKind::Wheel { .. }
-        | MeasureKind::Axle { .. } => false,
     }
 }
