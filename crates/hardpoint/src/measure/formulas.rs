@@ -82,25 +82,7 @@ impl<'a, T: Real> Instant<'a, T> {
                 along.spread().dot(p)
             }
             MeasureKind::Angle { from, to, about } => {
-                let [a, b] = self.rays(k, [from, to]);
-                // atan2(abs(a x b), a . b); about n, for the projections along it:
-                // atan2(n . (a x b), a . b - (n . a) (n . b))
-                let (across, along) = (a.cross(b), a.dot(b));
-                let within = match about {
-                    None => angle_between(across, along),
-                    Some(n) => {
-                        let n = n.spread();
-                        let (sin, cos) = (n.dot(across), along - n.dot(a) * n.dot(b));
-                        // A direction along n has no projection: NaN.
-                        let least = a.dot(a) * b.dot(b) * T::constant(PARALLEL * PARALLEL);
-                        let projected = sin * sin + cos * cos;
-                        if projected.exceeds(least) {
-                            sin.atan2(cos)
-                        } else {
-                            unknown().without_derivatives()
-                        }
-                    }
-                };
+                let within = angle_about(self.rays(k, [from, to]), *about);
                 self.whole_turns.get(k).map_or(within, |turns| within + *turns)
             }
             MeasureKind::Orientation { body, angle, relative_to } => {
@@ -349,6 +331,19 @@ pub(crate) fn is_formula(model: &Model, output: usize) -> bool {
 /// The component of a vector along a unit vector, or its magnitude.
 fn component<T: Real>(v: Vec3<T>, along: Option<Vec3>) -> T {
     along.map_or_else(|| v.norm(), |along| along.spread().dot(v))
+}
+
+/// Angle from one direction to another, between them or about n.
+fn angle_about<T: Real>([a, b]: [Vec3<T>; 2], about: Option<Vec3>) -> T {
+    // atan2(abs(a x b), a . b); about n, for the projections along it:
+    // atan2(n . (a x b), a . b - (n . a) (n . b))
+    let (across, along) = (a.cross(b), a.dot(b));
+    let Some(n) = about.map(Vec3::spread) else { return angle_between(across, along) };
+    let (sin, cos) = (n.dot(across), along - n.dot(a) * n.dot(b));
+    // A direction along n has no projection: NaN.
+    let least = a.dot(a) * b.dot(b) * T::constant(PARALLEL * PARALLEL);
+    let projected = sin * sin + cos * cos;
+    if projected.exceeds(least) { sin.atan2(cos) } else { T::constant(f64::NAN).without_derivatives() }
 }
 
 /// Angle in [0, pi] from the magnitude of its sine and its cosine, times any positive number. Where it is 0 or pi but

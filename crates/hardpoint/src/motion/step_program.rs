@@ -191,6 +191,18 @@ pub(crate) struct Outputs {
     derivatives: usize,
 }
 
+impl Outputs {
+    /// Positions of outputs that begin at these, the rest of them with these numbers of margins, defects, measures and
+    /// numbers of bodies.
+    fn after(judged: usize, blocks: usize, rest: usize, counts: [usize; 4]) -> Self {
+        let [margins, judged_defects, measured, bodies] = counts;
+        let defects = rest + margins;
+        let measures = defects + judged_defects;
+        let states = measures + measured;
+        Self { judged, blocks, margins: rest, defects, measures, states, derivatives: states + bodies }
+    }
+}
+
 /// Quantities that a run is checked by, in this order.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum StepCheck {
@@ -298,23 +310,12 @@ impl StepProgram {
                 false => largest_of(state.watched.iter().map(|w| w.most * w.least)),
             });
             out.extend(speeds);
-            let blocks_at = out.len();
+            let first_block = out.len();
             let watched = state.watched.iter().zip(&state.determinants);
             // det J, and max / min of the pivots
             out.extend(watched.flat_map(|(w, determinant)| [*determinant, w.most * w.least]));
-            let margins_at = out.len();
-            let defects_at = margins_at + margins.len();
-            let measures = defects_at + more.judged.len();
-            let states = measures + more.measures.len();
-            places = Some(Outputs {
-                judged,
-                blocks: blocks_at,
-                margins: margins_at,
-                defects: defects_at,
-                measures,
-                states,
-                derivatives: states + bodies.len(),
-            });
+            let rest = [margins.len(), more.judged.len(), more.measures.len(), bodies.len()];
+            places = Some(Outputs::after(judged, first_block, out.len(), rest));
             out.extend([margins, more.judged, more.measures, bodies, more.results].concat());
             out
         });
@@ -324,12 +325,7 @@ impl StepProgram {
         let inputs = Inputs::of(&channels, purpose, model.drivers.len(), laws);
         let pieces = pieces(topology, &channels);
         let piece_of = |operand| {
-            let channel = match operand {
-                Operand::Uniform(k) => Some(k as usize / CONDITIONS),
-                Operand::Input(k) => (k as usize).checked_sub(CONDITIONS).map(|k| k / inputs.known),
-                Operand::Value(_) | Operand::Constant(_) => None,
-            };
-            channel.and_then(|channel| pieces.get(channel)).copied().unwrap_or(0)
+            channel_of(operand, inputs.known).and_then(|channel| pieces.get(channel)).copied().unwrap_or(0)
         };
         let (program, _) = recorded.program(Options::default());
         let program = Staged::new(program, inputs.design, execution, |step| {
@@ -347,6 +343,15 @@ impl StepProgram {
             moved,
             defects,
         })
+    }
+}
+
+/// Number of the channel that an operand belongs to, with this number of known values per channel.
+fn channel_of(operand: Operand, known: usize) -> Option<usize> {
+    match operand {
+        Operand::Uniform(k) => Some(k as usize / CONDITIONS),
+        Operand::Input(k) => (k as usize).checked_sub(CONDITIONS).map(|k| k / known),
+        Operand::Value(_) | Operand::Constant(_) => None,
     }
 }
 

@@ -3,7 +3,7 @@
 //! A window is a [`Solution`] of consecutive output times. The solver and the counted turns continue from one window to
 //! the next, so that all numbers are the same as without windows.
 
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 
 use hardpoint_tape::LANES;
 
@@ -12,8 +12,10 @@ use crate::load::{Compliances, LoadSolver, load_measures};
 use crate::measure::{self, Slopes, StepValues};
 use crate::model::{BodyId, DriverId, Model, OutputSource, VariableId};
 use crate::motion::margin::Margins;
+use crate::motion::tape::Tape;
+use crate::motion::turns::TurnCounter;
 use crate::motion::{BodyState, Motion};
-use crate::sensitivity::{Admissibility, BodySensitivity, Sensitivities};
+use crate::sensitivity::{Admissibility, BodySensitivity, Sensitivities, SensitivitySolver};
 use crate::topology::CoordinateId;
 
 use super::analysis::Analysis;
@@ -100,23 +102,8 @@ impl Analysis<'_> {
         let giving = || Compliances::new(self.design_map(), topology, &design.values, sensitive);
         let mut compliances = (measures && of_motion).then(giving).flatten();
         let loads = measures && (self.asks_for_loads() || compliances.is_some());
-        let mut workspaces = PerPlan::new(self, design, |Plan { analysis, design, .. }: Plan<'_>| {
-            let (map, plan) = (analysis.design_map(), analysis.topology());
-            let slopes = || {
-                let asked = (0..model.measures.len()).filter(|m| design.needs_measure(*m));
-                let openings = analysis.openings().map_or(&[][..], |(openings, _)| openings);
-                Slopes::new(map, plan, (&design.values, asked), sensitive, openings)
-            };
-            let slopes = measures.then(slopes).flatten();
-            let openings = analysis.openings().filter(|_| measures && sensitive);
-            let curvatures = openings.and_then(|openings| {
-                let directions = derived_along(model, &slopes, design);
-                let along = (&design.values[..], &[][..]);
-                (!directions.is_empty()).then(|| Curvatures::new(map, plan, along, openings, directions))
-            });
-            let margins = Margins::new(analysis.solved_model(), plan, &design.geometry);
-            Workspaces { slopes, curvatures, margins, coordinates: plan.places(topology).flatten().collect() }
-        });
+        let mut workspaces =
+            PerPlan::new(self, design, |plan| Workspaces::of(plan, self, measures, sensitive));
         let mut walk = match measures && self.needs_kernel().is_some() {
             true => Walk::new(self, design, wanted),
             false => Walk::by_programs(
@@ -127,27 +114,11 @@ impl Analysis<'_> {
             ),
         };
         if loads {
-            walk = walk.with_loads(|Plan { analysis, design, .. }| {
-                let measures = load_measures(model);
-                let differentiates = sensitive && measures.iter().any(|m| design.needs_measure(*m));
-                let (map, topology) = (analysis.design_map(), analysis.topology());
-                LoadSolver::new(map, topology, &design.values, measures, differentiates)
-            });
+            walk = walk.with_loads(|plan| load_solver(plan, model, sensitive));
         }
         let rows = usize::min(rows, model.times.len());
-        let mut sensitivities = std::mem::take(&mut solution.sensitivities);
-        match &walk.solver {
-            Some(solver) => solver.make_room(&mut sensitivities, rows),
-            None => sensitivities = Sensitivities::default(),
-        }
-        let mut window = Window {
-            first: 0,
-            done: 0,
-            motion: std::mem::take(&mut solution.motion),
-            sensitivities,
-            slopes: StepValues::new(model, variables, rows),
-        };
-        self.make_room(&mut window.motion, rows);
+        let slopes = StepValues::new(model, variables, rows);
+        let mut window = Window::begin(self, walk.solver.as_ref(), rows, slopes, solution);
         let stop = walk.all(&mut window, progress, |window, solved, count, solver| {
             let times = &model.times[window.done..window.done + count];
             let k = window.done - window.first;
@@ -162,20 +133,14 @@ impl Analysis<'_> {
                     if let (Some(found), Some(equilibrium)) = (&mut *slopes, &mut equilibrium) {
                         found.set_openings(openings, &equilibrium.driver_rates(one, times[0]));
                     }
-                    let mut along_drivers = Vec::new();
                     let is_curved =
                         design.needs.as_ref().is_none_or(|needs| needs.curved_at(window.done - count));
                     let mut curvatures = curvatures.as_mut().filter(|_| is_curved);
-                    if let (Some(equilibrium), true) = (equilibrium, measures) {
-                        equilibrium.add_compliances(
-                            one,
-                            times[0],
-                            curvatures.as_deref_mut(),
-                            &mut window.slopes,
-                        );
-                        if let Some(curvatures) = curvatures {
-                            along_drivers = equilibrium.poses_along_drivers(one, times[0], curvatures);
-                        }
+                    let mut along_drivers = Vec::new();
+                    if let (Some(solver), true) = (equilibrium, measures) {
+                        solver.add_compliances(one, times[0], curvatures.as_deref_mut(), &mut window.slopes);
+                        along_drivers = curvatures
+                            .map_or(Vec::new(), |curved| solver.poses_along_drivers(one, times[0], curved));
                     }
                     if let Some(found) = slopes {
                         found.add(&mut one.mechanism, times[0], &along_drivers, &mut window.slopes);
@@ -195,19 +160,8 @@ impl Analysis<'_> {
                     }
                 }
                 SolvedSteps::Batch(tape, lanes, turns) => {
-                    if !tape.measures().is_empty() {
-                        window.slopes.take_recorded(tape.measures(), lanes.clone());
-                    } else if measures && !window.slopes.measures().is_empty() {
-                        lanes.clone().for_each(|_| window.slopes.begin());
-                    }
                     tape.coordinates(topology, window.motion.coordinates.block_mut(k));
-                    if let Some(turns) = turns {
-                        let of_lane = |lane: usize| &turns.lanes[lane * turns.len()..][..turns.len()];
-                        lanes.clone().for_each(|lane| window.motion.counted.extend_from_slice(of_lane(lane)));
-                    }
-                    if measures {
-                        window.motion.margins.extend(lanes.map(|lane| tape.margin(lane)));
-                    }
+                    window.add_batch(tape, lanes, turns, measures);
                 }
             }
             if window.done - window.first == rows && window.done < model.times.len() {
@@ -237,6 +191,43 @@ struct Workspaces<'a> {
     margins: Margins<f64>,
     /// Coordinates in the order of the first plan.
     coordinates: Vec<CoordinateId>,
+}
+
+impl<'a> Workspaces<'a> {
+    /// Workspaces of a plan in a run of an analysis, whose model is that of the user, and whose plan is the first.
+    fn of(
+        Plan { analysis, design, .. }: Plan<'a>,
+        run: &Analysis<'_>,
+        measures: bool,
+        sensitive: bool,
+    ) -> Self {
+        let (model, map, plan) = (run.model(), analysis.design_map(), analysis.topology());
+        let slopes = || {
+            let asked = (0..model.measures.len()).filter(|m| design.needs_measure(*m));
+            let openings = analysis.openings().map_or(&[][..], |(openings, _)| openings);
+            Slopes::new(map, plan, (&design.values, asked), sensitive, openings)
+        };
+        let slopes = measures.then(slopes).flatten();
+        let openings = analysis.openings().filter(|_| measures && sensitive);
+        let curvatures = openings.and_then(|openings| {
+            let directions = derived_along(model, &slopes, design);
+            let along = (&design.values[..], &[][..]);
+            (!directions.is_empty()).then(|| Curvatures::new(map, plan, along, openings, directions))
+        });
+        let margins = Margins::new(analysis.solved_model(), plan, &design.geometry);
+        Self { slopes, curvatures, margins, coordinates: plan.places(run.topology()).flatten().collect() }
+    }
+}
+
+/// Solver of the loads of a plan, for the measures of the user's model.
+fn load_solver<'a>(
+    Plan { analysis, design, .. }: Plan<'a>,
+    model: &Model,
+    sensitive: bool,
+) -> LoadSolver<'a> {
+    let measures = load_measures(model);
+    let differentiates = sensitive && measures.iter().any(|m| design.needs_measure(*m));
+    LoadSolver::new(analysis.design_map(), analysis.topology(), &design.values, measures, differentiates)
 }
 
 /// Directions along which compliances and slopes at an equilibrium are derivatives: their derivatives by the variables
@@ -289,12 +280,52 @@ impl Sink for Window {
 }
 
 impl Window {
+    /// Starts the first window in the memory of a solution.
+    fn begin(
+        analysis: &Analysis<'_>,
+        solver: Option<&SensitivitySolver>,
+        rows: usize,
+        slopes: StepValues,
+        solution: &mut Solution,
+    ) -> Self {
+        let mut sensitivities = std::mem::take(&mut solution.sensitivities);
+        match solver {
+            Some(solver) => solver.make_room(&mut sensitivities, rows),
+            None => sensitivities = Sensitivities::default(),
+        }
+        let mut motion = std::mem::take(&mut solution.motion);
+        analysis.make_room(&mut motion, rows);
+        Self { first: 0, done: 0, motion, sensitivities, slopes }
+    }
+
     /// Completes the window with its measures.
     fn close(&mut self, analysis: &Analysis<'_>, design: &PreparedDesign, solution: &mut Solution) {
         self.motion.times.extend_from_slice(&analysis.model().times[self.first..self.done]);
         solution.motion = std::mem::take(&mut self.motion);
         solution.sensitivities = std::mem::take(&mut self.sensitivities);
         analysis.measure(design, &self.slopes, solution);
+    }
+
+    /// Adds the measures, turns and margins of a batch of steps.
+    fn add_batch(
+        &mut self,
+        tape: &Tape,
+        lanes: Range<usize>,
+        turns: Option<&TurnCounter<'_>>,
+        measures: bool,
+    ) {
+        if !tape.measures().is_empty() {
+            self.slopes.take_recorded(tape.measures(), lanes.clone());
+        } else if measures && !self.slopes.measures().is_empty() {
+            lanes.clone().for_each(|_| self.slopes.begin());
+        }
+        if let Some(turns) = turns {
+            let of_lane = |lane: usize| &turns.lanes[lane * turns.len()..][..turns.len()];
+            lanes.clone().for_each(|lane| self.motion.counted.extend_from_slice(of_lane(lane)));
+        }
+        if measures {
+            self.motion.margins.extend(lanes.map(|lane| tape.margin(lane)));
+        }
     }
 
     /// Starts the next window in the memory of the last.

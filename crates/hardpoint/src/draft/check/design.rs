@@ -198,16 +198,7 @@ impl Checker<'_> {
         let at = here.item("changes", k);
         let change = match change {
             ChangeDraft::Move { hardpoint: name, velocity } => {
-                let hardpoint = self.hardpoint(name, at.clone())?;
-                if self.curve_points.contains(&hardpoint) {
-                    let message = format!("design variable `{owner}` moves `{name}`, a point of a curve");
-                    self.fault("HP0226", at, message)
-                        .note("the shape of a curve cannot be a design variable; its position and direction can")
-                        .help(
-                            "write the curve's points as coordinates, and move the hardpoint that carries it",
-                        );
-                    return None;
-                }
+                let hardpoint = self.moved_hardpoint(name, owner, at.clone())?;
                 self.check_not_zero(vectors(&[*velocity]), owner, at);
                 change::Move { hardpoint, velocity: *velocity }.into()
             }
@@ -216,20 +207,9 @@ impl Checker<'_> {
                 let (_, rotation) = self.line(about, owner, here, "about")?;
                 change::Marker { joint, end: End::Both, position: Vec3::ZERO, rotation }.into()
             }
-            ChangeDraft::Play { joint: name, along } => {
-                let joint = self.joint(name, at.clone())?;
-                let of = &self.model.joints[joint.0];
-                if !of.kind.play().contains(along) {
-                    let message = format!("joint `{name}` of design variable `{owner}` has no play");
-                    let kind = of.kind.name;
-                    self.fault("HP0275", at, message)
-                        .note(format!(
-                            "it is a {kind} joint; revolute, cylindrical and spherical joints have play"
-                        ))
-                        .help("name a joint with a pin or ball, or move a marker with `markers`");
-                    return None;
-                }
-                let position = of.frames[1].cols[*along];
+            ChangeDraft::Play { joint, along } => {
+                let joint = self.joint_with_play(joint, *along, owner, at)?;
+                let position = self.model.joints[joint.0].frames[1].cols[*along];
                 change::Marker { joint, end: End::J, position, rotation: Vec3::ZERO }.into()
             }
             ChangeDraft::Marker { joint, end, position, rotation } => {
@@ -240,17 +220,7 @@ impl Checker<'_> {
             ChangeDraft::Length { joint, rate } => {
                 let joint = self.joint(joint, at.clone())?;
                 self.check_not_zero(number(*rate), owner, at.clone());
-                let j = &self.model.joints[joint.0];
-                if j.length.is_none() {
-                    let (name, kind) = (j.name.clone(), j.kind.name);
-                    let message = format!("joint `{name}` has no `length` that can change");
-                    let fault = self.fault("HP0225", at, message);
-                    fault.note(format!(
-                        "its type is `{kind}`; without `length`, the length of a rod is the distance between its hardpoints"
-                    ));
-                    fault.help(format!("give rod `{name}` a `length`, or move one of its hardpoints"));
-                    return None;
-                }
+                self.check_has_length(joint, at)?;
                 change::Length { joint, rate: *rate }.into()
             }
             ChangeDraft::Parameter { parameter, rate } => {
@@ -260,16 +230,7 @@ impl Checker<'_> {
                 change::Parameter { parameter, rate: *rate }.into()
             }
             ChangeDraft::Law { driver, parameter, rate } => {
-                let draft = self.draft;
-                let names = draft.drivers.iter().map(|d| d.name.as_str());
-                let k = self.find("driver", driver, at.clone(), names)?;
-                if draft.unread.has(Section::Drivers, k, "law") {
-                    return None;
-                }
-                let parameters = draft.drivers[k].law.parameters();
-                let names = parameters.iter().map(|p| p.name.as_str());
-                let what = format!("parameter of the law of `{driver}`");
-                let parameter = self.find(&what, parameter, here.key("parameter"), names)?;
+                let [k, parameter] = self.law_parameter(driver, parameter, at.clone(), here)?;
                 self.check_not_zero(number(*rate), owner, at);
                 // A faulty driver has been reported.
                 let driver = self.driver_ids[k]?;
@@ -281,20 +242,97 @@ impl Checker<'_> {
                 let body = self.body(body, at.clone());
                 let (joint, body) = (joint?, body?);
                 self.check_not_zero(vectors(&[*v, *u]), owner, at.clone());
-                let bodies = self.model.joints[joint.0].bodies;
-                if !bodies.contains(&body) {
-                    let names = bodies.map(|b| format!("`{}`", self.model.bodies[b.0].name)).join(" and ");
-                    let message = format!(
-                        "joint `{}` has no marker on body `{}`",
-                        self.model.joints[joint.0].name, self.model.bodies[body.0].name
-                    );
-                    self.fault("HP0218", at, message).note(format!("it connects {names}"));
-                    return None;
-                }
+                self.check_is_connected(joint, body, at)?;
                 change::Field { joint, body, v: *v, u: *u }.into()
             }
         };
         Some(vec![change])
+    }
+
+    /// Returns a hardpoint that a variable moves. HP0226 if it is a point of a curve.
+    fn moved_hardpoint(&mut self, name: &str, owner: &str, at: DraftLocation) -> Option<HardpointId> {
+        let hardpoint = self.hardpoint(name, at.clone())?;
+        if self.curve_points.contains(&hardpoint) {
+            let message = format!("design variable `{owner}` moves `{name}`, a point of a curve");
+            self.fault("HP0226", at, message)
+                .note("the shape of a curve cannot be a design variable; its position and direction can")
+                .help("write the curve's points as coordinates, and move the hardpoint that carries it");
+            return None;
+        }
+        Some(hardpoint)
+    }
+
+    /// Returns a joint with play along an axis of its marker. HP0275 if it has none.
+    fn joint_with_play(
+        &mut self,
+        name: &str,
+        along: usize,
+        owner: &str,
+        at: DraftLocation,
+    ) -> Option<JointId> {
+        let joint = self.joint(name, at.clone())?;
+        let kind = self.model.joints[joint.0].kind;
+        if !kind.play().contains(&along) {
+            let message = format!("joint `{name}` of design variable `{owner}` has no play");
+            let note =
+                format!("it is a {} joint; revolute, cylindrical and spherical joints have play", kind.name);
+            self.fault("HP0275", at, message)
+                .note(note)
+                .help("name a joint with a pin or ball, or move a marker with `markers`");
+            return None;
+        }
+        Some(joint)
+    }
+
+    /// HP0225: a joint without a given length that could change.
+    fn check_has_length(&mut self, joint: JointId, at: DraftLocation) -> Option<()> {
+        let j = &self.model.joints[joint.0];
+        if j.length.is_none() {
+            let (name, kind) = (j.name.clone(), j.kind.name);
+            let message = format!("joint `{name}` has no `length` that can change");
+            let fault = self.fault("HP0225", at, message);
+            fault.note(format!(
+                "its type is `{kind}`; without `length`, the length of a rod is the distance between its hardpoints"
+            ));
+            fault.help(format!("give rod `{name}` a `length`, or move one of its hardpoints"));
+            return None;
+        }
+        Some(())
+    }
+
+    /// Returns the numbers of a driver and of a parameter of its law.
+    fn law_parameter(
+        &mut self,
+        driver: &str,
+        parameter: &str,
+        at: DraftLocation,
+        here: Here,
+    ) -> Option<[usize; 2]> {
+        let draft = self.draft;
+        let names = draft.drivers.iter().map(|d| d.name.as_str());
+        let k = self.find("driver", driver, at, names)?;
+        if draft.unread.has(Section::Drivers, k, "law") {
+            return None;
+        }
+        let parameters = draft.drivers[k].law.parameters();
+        let names = parameters.iter().map(|p| p.name.as_str());
+        let what = format!("parameter of the law of `{driver}`");
+        Some([k, self.find(&what, parameter, here.key("parameter"), names)?])
+    }
+
+    /// HP0218: a body that a joint does not connect.
+    fn check_is_connected(&mut self, joint: JointId, body: BodyId, at: DraftLocation) -> Option<()> {
+        let bodies = self.model.joints[joint.0].bodies;
+        if !bodies.contains(&body) {
+            let names = bodies.map(|b| format!("`{}`", self.model.bodies[b.0].name)).join(" and ");
+            let message = format!(
+                "joint `{}` has no marker on body `{}`",
+                self.model.joints[joint.0].name, self.model.bodies[body.0].name
+            );
+            self.fault("HP0218", at, message).note(format!("it connects {names}"));
+            return None;
+        }
+        Some(())
     }
 
     /// HP0217: a change with zero velocity.
