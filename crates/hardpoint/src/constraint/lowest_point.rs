@@ -5,7 +5,23 @@
 
 use crate::space::{Real, Vec3, Wrench};
 
-use super::{MarkerPair, Radius, axis};
+use super::{MarkerPair, axis};
+
+/// Radius of a wheel, which is constant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Radius(u64);
+
+impl Radius {
+    /// Radius, m.
+    pub const fn of(metres: f64) -> Self {
+        Self(metres.to_bits())
+    }
+
+    /// Returns the radius, m.
+    pub const fn metres(self) -> f64 {
+        f64::from_bits(self.0)
+    }
+}
 
 /// Lowest point: `C = P_j - r (z_i - c z_j) / sqrt(1 - c^2)`, `c = z_i . z_j`.
 #[inline(always)]

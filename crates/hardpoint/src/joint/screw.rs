@@ -25,3 +25,10 @@ pub static SCREW: JointType = JointType {
     rows: &[PARALLEL_Z[0], PARALLEL_Z[1], ON_LINE[0], ON_LINE[1]],
     coordinates: &[angle(0), displacement(1)],
 };
+
+impl JointType {
+    /// True if a `lead` couples its displacement to its angle.
+    pub fn has_lead(&self) -> bool {
+        std::ptr::eq(self, &SCREW)
+    }
+}
