@@ -35,7 +35,7 @@ impl FromStr for Axes {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let name = super::plain(text);
+        let name = plain(text);
         let words = NAMED.iter().find(|n| n.0.contains(&name.as_str())).map_or(text, |n| n.1);
         let like = "write them like \"x back, y right, z up\", or as `iso`, `sae`, `adams` or `lotus`";
         let mut found: [Option<(usize, f64)>; 3] = [None; 3];
@@ -64,6 +64,11 @@ impl FromStr for Axes {
             _ => Err(format!("three axes are needed; {like}")),
         }
     }
+}
+
+/// Normalises a name: no capitals, hyphens and the like.
+pub(super) fn plain(name: &str) -> String {
+    name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
 }
 
 #[cfg(test)]

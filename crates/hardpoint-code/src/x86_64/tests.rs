@@ -7,7 +7,9 @@ use std::collections::HashSet;
 
 use iced_x86::{Decoder, DecoderOptions, InstructionInfoFactory, Mnemonic, OpAccess, Register};
 
-use super::*;
+use super::machine::{emit, has};
+use crate::{PARTS, Width};
+use hardpoint_tape::{LANES, Lanes, Program};
 use random::{Random, Shape};
 
 /// Bytes that an instruction may access, relative to the register.

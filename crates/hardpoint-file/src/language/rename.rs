@@ -72,7 +72,7 @@ impl Document {
         if new == name {
             return Ok(Vec::new());
         }
-        let has_new = |o: &super::Occurrence| o.name == new && o.of == NameUse::Declaration(section);
+        let has_new = |o: &super::names::Occurrence| o.name == new && o.of == NameUse::Declaration(section);
         if self.index.names.iter().any(has_new) {
             return fail(format!("`[{section}]` has an entry `{}` already", shown(new)));
         }
@@ -159,7 +159,7 @@ impl Document {
 
     /// Pattern of shapes that matches only one of the names of a shape: the old one if true.
     fn changed_pattern(&self, old: &str, new: &str, section: &str) -> Option<(&str, bool)> {
-        let is_pattern = |o: &&super::Occurrence| {
+        let is_pattern = |o: &&super::names::Occurrence| {
             matches!(o.of, NameUse::Key("a shape") | NameUse::Value("a shape")) && o.name.contains('*')
         };
         let patterns = self.index.names.iter().filter(is_pattern).map(|o| o.name.as_str());

@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use crate::figures::{count, quoted, some_in_words};
 
-use super::joint_name;
+use super::names::joint_name;
 
 /// Redundant constraints among the same joints, couplers and drivers.
 #[derive(Clone, Debug, Serialize)]

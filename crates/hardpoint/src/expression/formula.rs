@@ -5,7 +5,7 @@ use crate::number::Real;
 use super::parse::{self, ExpressionError, parse_open};
 use super::program::{Operation, Program};
 
-/// A number of a model, written as an expression in the [language](self) without the time: `hub + shim/2`.
+/// A number of a model, written as an expression in the [language](super) without the time: `hub + shim/2`.
 ///
 /// Names other than functions refer to parameters of the model; names of two parts, like `ball.x`, to coordinates of
 /// its hardpoints. Angles are in radians.

@@ -1,8 +1,8 @@
 //! Joint types, one file each.
 //!
 //! A joint is data. As a *tree* joint it is a chain of [`Freedom`]s that positions body j relative to body i; as a
-//! *cut* joint it is a list of elementary constraints ([`Row`]) between its two markers. The solver uses freedoms and
-//! rows only: to add a joint, add a file and list it here.
+//! *cut* joint it is a list of elementary constraints ([`Row`](crate::constraint::Row)) between its two markers. The
+//! solver uses freedoms and rows only: to add a joint, add a file and list it here.
 //!
 //! # Frames, signs and units
 //!
