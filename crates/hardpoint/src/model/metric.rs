@@ -77,6 +77,16 @@ macro_rules! reductions {
                 match self { $(Self::$kind $(($held))? => Self::$kind $(($held.converted(_numbers)))?,)* }
             }
 
+            /// The target of an `rms` or `rms_at_points`, empty where an `rms` is beyond zero.
+            pub fn target(&self) -> Option<&[[f64; 2]]> {
+                match self {
+                    $(Self::$kind $(($held))? => {
+                        let targets: &[Option<&[[f64; 2]]>] = &[$($held.target())?];
+                        targets.first().copied().flatten()
+                    })*
+                }
+            }
+
             fn describe(&self, words: &MetricWords<'_>) -> String {
                 match self {
                     $(#[allow(unused_variables, reason = "not every argument is said")]
@@ -223,6 +233,8 @@ pub struct ReductionArguments {
 /// Argument of a reduction.
 trait Argument {
     fn of(arguments: ReductionArguments) -> Self;
+    /// Target, if the argument is one.
+    fn target(&self) -> Option<&[[f64; 2]]>;
     /// Returns it with other numbers for those of abscissa and output.
     fn converted(&self, numbers: [&dyn Fn(f64) -> f64; 2]) -> Self;
 }
@@ -230,6 +242,10 @@ trait Argument {
 impl Argument for f64 {
     fn of(arguments: ReductionArguments) -> Self {
         arguments.at
+    }
+
+    fn target(&self) -> Option<&[[f64; 2]]> {
+        None
     }
 
     fn converted(&self, [x, _]: [&dyn Fn(f64) -> f64; 2]) -> Self {
@@ -240,6 +256,10 @@ impl Argument for f64 {
 impl Argument for Vec<[f64; 2]> {
     fn of(arguments: ReductionArguments) -> Self {
         arguments.target
+    }
+
+    fn target(&self) -> Option<&[[f64; 2]]> {
+        Some(self)
     }
 
     fn converted(&self, [x, y]: [&dyn Fn(f64) -> f64; 2]) -> Self {
@@ -291,17 +311,6 @@ impl Reduction {
         match self.part() {
             CurvePart::Place { .. } | CurvePart::Points(_) => true,
             CurvePart::Extrema(_) | CurvePart::Ends | CurvePart::Path(_) => false,
-        }
-    }
-
-    /// The target of an `rms` or `rms_at_points`, empty where an `rms` is beyond zero.
-    pub fn target(&self) -> Option<&[[f64; 2]]> {
-        match self.part() {
-            CurvePart::Path(PathIntegral::Rms(target)) | CurvePart::Points(target) => Some(target),
-            CurvePart::Path(PathIntegral::Mean | PathIntegral::Integral)
-            | CurvePart::Extrema(_)
-            | CurvePart::Ends
-            | CurvePart::Place { .. } => None,
         }
     }
 

@@ -8,7 +8,26 @@ use super::curve::{Polynomial, SampledCurve, WidePolynomial, crossing};
 use crate::model::{Metric, PathIntegral, on_target};
 use crate::number::Real;
 
+/// Rule by which the integrand is summed up over the path.
+#[derive(Clone, Copy)]
+enum PathRule {
+    /// Over the abscissa, which counts down where it goes back.
+    Sum,
+    /// Mean over the travel.
+    Mean,
+    /// Root of that mean.
+    RootOfMean,
+}
+
 impl PathIntegral<'_> {
+    fn rule(self) -> PathRule {
+        match self {
+            Self::Integral => PathRule::Sum,
+            Self::Mean => PathRule::Mean,
+            Self::Rms(_) => PathRule::RootOfMean,
+        }
+    }
+
     /// Integrand as a function of abscissa and value.
     fn integrand<T: Real>(self, at: T, value: T) -> T {
         match self {
@@ -22,21 +41,21 @@ impl PathIntegral<'_> {
 
     /// Mean of the integrand over the travel, for metrics that are based on it.
     fn mean_of_integrand(self, value: f64) -> f64 {
-        match self {
-            Self::Mean => value,
-            Self::Rms(_) => value * value,
-            Self::Integral => 0.0,
+        match self.rule() {
+            PathRule::Sum => 0.0,
+            PathRule::Mean => value,
+            PathRule::RootOfMean => value * value,
         }
     }
 
     /// Value of the metric from the nodes of its path.
     pub(super) fn value<T: Real>(self, nodes: impl Iterator<Item = PathNode<T>>) -> Option<T> {
         let nodes = nodes.map(|node| (self.integrand(node.x, node.y), node.dx));
-        match self {
+        match self.rule() {
             // sum f_g dx_g
-            Self::Integral => nodes.map(|(f, dx)| f * dx).reduce(|sum, part| sum + part),
-            Self::Mean => mean(nodes),
-            Self::Rms(_) => mean(nodes).map(T::sqrt),
+            PathRule::Sum => nodes.map(|(f, dx)| f * dx).reduce(|sum, part| sum + part),
+            PathRule::Mean => mean(nodes),
+            PathRule::RootOfMean => mean(nodes).map(T::sqrt),
         }
     }
 
@@ -44,11 +63,11 @@ impl PathIntegral<'_> {
     fn error(self, value: f64, errors: &IntegralErrors) -> Option<f64> {
         let sum: f64 = errors.parts.iter().map(|(_, error)| *error).sum::<Option<f64>>()?;
         let mean = sum / errors.travel;
-        Some(match self {
-            Self::Integral => sum,
-            Self::Mean => mean,
+        Some(match self.rule() {
+            PathRule::Sum => sum,
+            PathRule::Mean => mean,
             // sqrt(rms^2 + error of the mean square) - rms
-            Self::Rms(_) => (value * value + mean).sqrt() - value,
+            PathRule::RootOfMean => (value * value + mean).sqrt() - value,
         })
     }
 }
@@ -134,9 +153,9 @@ pub(super) fn path_stretches<T: Real>(
 ) -> Vec<Stretch<T>> {
     let x = x.as_ref();
     let [low, high] = metric.window.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
-    let corners = match metric.take.integral() {
-        Some(PathIntegral::Rms(target)) if target.len() > 2 => &target[1..target.len() - 1],
-        Some(PathIntegral::Rms(_) | PathIntegral::Mean | PathIntegral::Integral) | None => &[],
+    let corners = match metric.take.target_points() {
+        Some([_, corners @ .., _]) => corners,
+        Some(_) | None => &[],
     };
     let mut stretches = Vec::new();
     for k in 0..y.values.len().saturating_sub(1) {
@@ -191,7 +210,10 @@ pub(super) fn coarse_middles(
     let mut parts = Vec::new();
     for other in [lower, wide] {
         let errors = integral_errors(of, (y, x), &stretches, value, other);
-        let scale = if matches!(of, PathIntegral::Integral) { errors.travel } else { 1.0 };
+        let scale = match of.rule() {
+            PathRule::Sum => errors.travel,
+            PathRule::Mean | PathRule::RootOfMean => 1.0,
+        };
         if of.error(value, &errors).is_some_and(|error| error <= tolerance * scale) {
             return Vec::new();
         }
