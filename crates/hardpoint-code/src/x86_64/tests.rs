@@ -7,9 +7,10 @@ use std::collections::HashSet;
 
 use iced_x86::{Decoder, DecoderOptions, InstructionInfoFactory, Mnemonic, OpAccess, Register};
 
-use super::machine::{emit, has};
+use super::check;
+use super::machine::emit;
 use crate::{PARTS, Width};
-use hardpoint_tape::{LANES, Lanes, Program};
+use hardpoint_tape::{Lanes, Program};
 use random::{Random, Shape};
 
 /// Bytes that an instruction may access, relative to the register.
