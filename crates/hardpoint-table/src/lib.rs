@@ -6,6 +6,7 @@
 //! | module | contents |
 //! |---|---|
 //! | [`Units`] | units of a file, and conversions from and to SI |
+//! | [`Unit`] | units of data by their symbols |
 //! | [`figures`] | numbers and units as text |
 //! | [`columns`] | columns of the result files |
 //! | [`csv`] | CSV tables that spreadsheets do not misread |
@@ -20,8 +21,10 @@ pub mod npy;
 pub mod results;
 pub mod series;
 pub mod tracks;
+mod symbols;
 mod units;
 
+pub use symbols::Unit;
 pub use units::{AngleUnit, LengthUnit, Units};
 
 /// Program and version, as entered in all output.

@@ -9,7 +9,8 @@ use crate::values::{
     DataError, Field, Fields, Reader, Shape, Subject, Table, Value, Wanted, closest, shown, text_from,
 };
 use hardpoint_table::csv::original;
-use hardpoint_table::{AngleUnit, LengthUnit, Units};
+use hardpoint_table::figures::unit as symbol_of;
+use hardpoint_table::{AngleUnit, LengthUnit, Unit, Units};
 
 /// Maximum number of rows.
 const MOST_ROWS: usize = 1_000_000;
@@ -40,6 +41,8 @@ pub(super) struct Curve {
     abscissas: &'static str,
     /// Unit of the abscissa, after a number.
     unit: &'static str,
+    /// Dimensions of abscissa and value; `None` where the model decides.
+    dimensions: [Option<Dimension>; 2],
     /// Instruction if the file is empty.
     write: &'static str,
 }
@@ -57,6 +60,7 @@ pub(super) const TABLE: Curve = Curve {
     abscissa: "time",
     abscissas: "times",
     unit: " s",
+    dimensions: [None; 2],
     write: "write a time in s and a value on each line, like `0.5, 12.5`",
 };
 /// Target of a metric.
@@ -70,6 +74,7 @@ pub(super) const TARGET: Curve = Curve {
     abscissa: "abscissa",
     abscissas: "abscissas",
     unit: "",
+    dimensions: [None; 2],
     write: "write an abscissa and a value on each line, in the units of the model file, like `-20, 0.15`",
 };
 /// Force of a spring.
@@ -83,6 +88,7 @@ pub(super) const FORCE: Curve = Curve {
     abscissa: "way",
     abscissas: "ways",
     unit: "",
+    dimensions: [Some(Dimension::LENGTH), Some(Dimension::FORCE)],
     write: "write a deflection in the model's length unit and a force in N on each line, like `12.5, 340`",
 };
 
@@ -90,6 +96,7 @@ pub(super) const FORCE: Curve = Curve {
 pub(super) const MOMENT: Curve = Curve {
     abscissa: "angle",
     abscissas: "angles",
+    dimensions: [Some(Dimension::ANGLE), Some(Dimension::MOMENT)],
     write: "write an angle in the model's angle unit and a moment in N m on each line, like `5, 34`",
     ..FORCE
 };
@@ -341,7 +348,7 @@ fn found(
     Ok(places)
 }
 
-/// Factors from the units in the titles of two columns to these; 1 without a unit of length or angle.
+/// Factors from the units in the titles of two columns to those of the model file; 1 without a unit.
 fn scales(
     places: [usize; 2],
     header: Option<&[String]>,
@@ -349,21 +356,38 @@ fn scales(
     of: &Curve,
     units: Units,
 ) -> Result<[f64; 2], DataError> {
-    let unit = |place: usize| header.and_then(|titles| Title::of(titles.get(place)?).unit);
-    let [abscissa, value] = places.map(unit);
-    if let Some(written) = abscissa.as_deref().filter(|unit| of.abscissa == "time" && *unit != "s") {
-        let message = format!("the times of `{name}` are in `{}`", shown(written));
-        return Err(DataError::content(message, "give times in s"));
-    }
-    let scale = |written: Option<String>| {
-        let Some(written) = written else { return 1.0 };
-        match (LengthUnit::of_symbol(&written), AngleUnit::of_symbol(&written)) {
-            (Some(length), _) => units.length.per_metre() / length.per_metre(),
-            (None, Some(angle)) => units.angle.per_radian() / angle.per_radian(),
-            (None, None) => 1.0,
+    let mut scales = [1.0; 2];
+    for (k, place) in places.into_iter().enumerate() {
+        let Some(title) = header.and_then(|titles| titles.get(place)).map(|title| Title::of(title)) else {
+            continue;
+        };
+        let Some(written) = title.unit.as_deref() else { continue };
+        if k == 0 && of.abscissa == "time" {
+            if written != "s" {
+                let message = format!("the times of `{name}` are in `{}`", shown(written));
+                return Err(DataError::content(message, "give times in s"));
+            }
+            continue;
         }
-    };
-    Ok([scale(abscissa), scale(value)])
+        let of_column = format!("`{}` of `{name}` is in `{}`", shown(&title.name), shown(written));
+        let Some(unit) = Unit::of_symbol(written) else {
+            let message = format!("{of_column}, which is not a known unit");
+            let help = "give its values in the unit of the model file, or remove the unit of the column";
+            return Err(DataError::content(message, help));
+        };
+        if let Some(own) = of.dimensions[k].filter(|own| *own != unit.dimension) {
+            let own = symbol_of(units, own);
+            return Err(DataError::content(
+                format!("{of_column}, and the model file has {own}"),
+                &format!("give the values in {own}, or choose other `columns`"),
+            ));
+        }
+        // Numbers in the model's own unit stay as they are, without round-off.
+        if written != symbol_of(units, unit.dimension) {
+            scales[k] = unit.size * units.per_si(unit.dimension);
+        }
+    }
+    Ok(scales)
 }
 
 /// Title of a column.
@@ -424,6 +448,25 @@ impl Title {
             ),
         };
         Err(DataError::new(code, message, help))
+    }
+
+    /// Units in which the numbers below are read, as [`units`](Self::units), and the factor from the unit of the title
+    /// to theirs: any unit of this dimension is converted.
+    ///
+    /// # Errors
+    /// An error with this code if the unit measures something else.
+    pub fn conversion(
+        &self,
+        units: Units,
+        of: Dimension,
+        code: &'static str,
+    ) -> Result<(Units, f64), DataError> {
+        let written = self.unit.as_deref().and_then(Unit::of_symbol);
+        match (self.units(units, of, &symbol_of(units, of), code), written) {
+            (Ok(units), _) => Ok((units, 1.0)),
+            (Err(_), Some(unit)) if unit.dimension == of => Ok((units, unit.size * units.per_si(of))),
+            (Err(error), _) => Err(error),
+        }
     }
 }
 

@@ -7,7 +7,7 @@ use hardpoint::model::{Dimension, DriverId, ElementId, Measurements, Reading};
 
 use crate::values::{DataError, Diagnostics, Source, closest, shown};
 use hardpoint_table::Units;
-use hardpoint_table::figures::unit as unit_of;
+use hardpoint_table::figures::{unit as unit_of, with_unit};
 
 use super::data::Title;
 use super::model_file::ModelFile;
@@ -37,9 +37,25 @@ enum Holds {
     Sigma(usize),
 }
 
+/// A column that is read: what it holds, and the units of its numbers.
+#[derive(Clone, Copy)]
+struct MeasuredColumn {
+    holds: Holds,
+    units: Units,
+    /// Factor from the unit of the column to that of `units`; of a force to the value of its law.
+    factor: f64,
+}
+
+impl MeasuredColumn {
+    /// A number of the column in SI.
+    fn in_si(self, of: Dimension, x: f64) -> f64 {
+        self.factor * x / self.units.from_si(of, 1.0)
+    }
+}
+
 /// Index of the column that holds something.
-fn place_of(columns: &[Option<(Holds, Units)>], wanted: Holds) -> Option<usize> {
-    columns.iter().position(|column| column.is_some_and(|(holds, _)| holds == wanted))
+fn place_of(columns: &[Option<MeasuredColumn>], wanted: Holds) -> Option<usize> {
+    columns.iter().position(|column| column.is_some_and(|column| column.holds == wanted))
 }
 
 impl ModelFile {
@@ -85,12 +101,13 @@ impl ModelFile {
             let mut forces = Vec::new();
             let posture = found.lines.len();
             for (column, (held, cell)) in holds.iter().zip(cells).enumerate() {
-                let Some((held, units)) = *held else { continue };
-                match (held, cell) {
+                let Some(read) = *held else { continue };
+                match (read.holds, cell) {
                     (Holds::Driver(d), Some(x)) => {
-                        positions[d] = units.to_si(self.model.driven(&drivers[d]).quantity, *x);
+                        let quantity = self.model.driven(&drivers[d]).quantity;
+                        positions[d] = read.units.to_si(quantity, read.factor * x);
                     }
-                    (Holds::Force(e), Some(x)) => forces.push((ElementId(e), *x)),
+                    (Holds::Force(e), Some(x)) => forces.push((ElementId(e), read.factor * x)),
                     (Holds::Driver(_) | Holds::Force(_), None) => {
                         let help = "give the value of every driver and force of the first line";
                         return Err(DataError::new("HP0112", format!("{} is missing", here(column)), help));
@@ -105,21 +122,22 @@ impl ModelFile {
                         .note("it is the standard deviation of a reading"));
                     }
                     (Holds::Output(m), Some(x)) => {
-                        let in_si = |units: Units, x: f64| x / units.from_si(outputs[m].dimension, 1.0);
+                        let dimension = outputs[m].dimension;
                         let own = has(Holds::Sigma(m)).and_then(|column| {
                             // Standard deviations without a unit of their own have that of their readings.
                             let own = table.titles[column].unit.as_ref().and(holds[column]);
-                            Some(in_si(own.map_or(units, |(_, own)| own), cells[column]?))
+                            Some(own.unwrap_or(read).in_si(dimension, cells[column]?))
                         });
-                        let sigma = own.or(given[m].map(|sigma| in_si(self.units, sigma)));
-                        let reading = Reading { posture, output: m, value: in_si(units, *x), sigma };
+                        let given = given[m].map(|sigma| sigma / self.units.from_si(dimension, 1.0));
+                        let value = read.in_si(dimension, *x);
+                        let reading = Reading { posture, output: m, value, sigma: own.or(given) };
                         found.measurements.readings.push(reading);
                     }
                     (Holds::Sigma(_), _) | (Holds::Output(_), None) => {}
                 }
             }
             found.measurements.postures.push(positions);
-            if holds.iter().any(|h| matches!(h, Some((Holds::Force(_), _)))) {
+            if holds.iter().any(|h| matches!(h, Some(MeasuredColumn { holds: Holds::Force(_), .. }))) {
                 found.measurements.forces.push(forces);
             }
             found.lines.push(*line);
@@ -133,10 +151,10 @@ impl ModelFile {
     }
 
     /// Contents of every column, and the units of its numbers; `None` for columns that are left out.
-    fn columns(&self, table: &Readings, file: &str) -> Result<Vec<Option<(Holds, Units)>>, DataError> {
+    fn columns(&self, table: &Readings, file: &str) -> Result<Vec<Option<MeasuredColumn>>, DataError> {
         let mut found = Vec::new();
         for (column, title) in table.titles.iter().enumerate() {
-            let Title { name, unit } = title;
+            let Title { name, .. } = title;
             let note = format!("it is the title of column {} of `{file}`", column + 1);
             if is_left_out(title) {
                 found.push(None);
@@ -146,32 +164,31 @@ impl ModelFile {
                 let message = format!("`{}` is neither a driver, a force nor an output", shown(name));
                 DataError::new("HP0248", message, help).note(note.clone())
             })?;
-            if let (Holds::Force(_), Some(unit)) = (holds, unit.as_deref()) {
-                let message =
-                    format!("`{}` is in `{}`, and the law of a force has no unit", shown(name), shown(unit));
-                let help = format!(
-                    "head the column `{}`, and give values of the law, which multiplies the force of the model file",
-                    shown(name)
-                );
-                return Err(DataError::new("HP0248", message, help).note(note));
-            }
-            let of = self.dimension_of(holds);
-            let units = title.units(self.units, of, &unit_of(self.units, of), "HP0248");
-            let units = units.map_err(|error| error.note(note))?;
+            let converted = match holds {
+                Holds::Driver(d) => {
+                    let of = self.model.driven(&self.model.drivers[d]).quantity.into();
+                    title.conversion(self.units, of, "HP0248")
+                }
+                Holds::Force(e) => self.law_of(ElementId(e), title),
+                Holds::Output(m) | Holds::Sigma(m) => {
+                    title.conversion(self.units, outputs(&self.model)[m].dimension, "HP0248")
+                }
+            };
+            let (units, factor) = converted.map_err(|error| error.note(note))?;
             if place_of(&found, holds).is_some() {
                 let message = format!("`{}` is the title of two columns of `{file}`", shown(name));
                 return Err(DataError::new("HP0248", message, "remove one of the two"));
             }
-            found.push(Some((holds, units)));
+            found.push(Some(MeasuredColumn { holds, units, factor }));
         }
-        if !found.iter().any(|h| matches!(h, Some((Holds::Output(_), _)))) {
+        if !found.iter().any(|h| matches!(h, Some(MeasuredColumn { holds: Holds::Output(_), .. }))) {
             let message = format!("`{file}` has no column of readings");
             let help =
                 "add a column that is headed by a measure, or by a point's component, like `wheel_centre.z`";
             return Err(DataError::new("HP0248", message, help));
         }
         for (column, holds) in found.iter().enumerate() {
-            if let Some((Holds::Sigma(m), _)) = holds
+            if let Some(MeasuredColumn { holds: Holds::Sigma(m), .. }) = holds
                 && place_of(&found, Holds::Output(*m)).is_none()
             {
                 let message = format!("`{}` has no column of readings", shown(&table.titles[column].name));
@@ -207,12 +224,31 @@ impl ModelFile {
         })
     }
 
-    /// Dimension of the numbers of a column.
-    fn dimension_of(&self, holds: Holds) -> Dimension {
-        match holds {
-            Holds::Driver(d) => self.model.driven(&self.model.drivers[d]).quantity.into(),
-            Holds::Force(_) => Dimension::NUMBER,
-            Holds::Output(m) | Holds::Sigma(m) => outputs(&self.model)[m].dimension,
+    /// Factor from the numbers of a column to values of the law of a force. Forces with a unit are those in the nominal
+    /// design, with the sign of the force of the model file; values of the law have the unit `1`. Without a unit both
+    /// must be the same.
+    fn law_of(&self, force: ElementId, title: &Title) -> Result<(Units, f64), DataError> {
+        let (full, of) = self.model.at_unit_law(force);
+        let (name, full) = (shown(&title.name), self.units.from_si(of, full));
+        let own = unit_of(self.units, of);
+        let rejected = |message: String, help: String| Err(DataError::new("HP0248", message, help));
+        match title.unit.as_deref() {
+            Some("1") => Ok((self.units, 1.0)),
+            _ if full == 0.0 => rejected(
+                format!("`{name}` is zero in the model file, and its law has no effect"),
+                "give the force a magnitude other than zero, which the law multiplies".into(),
+            ),
+            // A magnitude of one that was converted there and back.
+            None if (full - 1.0).abs() <= 1e-12 => Ok((self.units, 1.0)),
+            None => rejected(
+                format!("`{name}` has no unit, and its law multiplies {}", with_unit(full, &own)),
+                format!("head the column `{name} [{own}]` for forces, or `{name} [1]` for values of the law"),
+            ),
+            Some(_) => {
+                let (units, factor) = title.conversion(self.units, of, "HP0248")?;
+                // A column in another unit of length is that of the road below a tyre.
+                Ok((units, factor * self.units.per_si(of) / units.per_si(of) / full))
+            }
         }
     }
 

@@ -210,6 +210,21 @@ fn a_table_is_the_same_in_the_text_and_in_a_file_and_in_any_unit() {
             same(&values(&expected, what), &values(&solved(&file), what), what);
         }
     }
+    // Units of titles are those of the numbers below.
+    let in_other_units = "way [cm],force [kN]\n-2,0\n0,0\n3,0.2\n8,1.5\n";
+    let (_folder, file) = in_folder(&[("stop.csv", in_other_units)], &spring("compression = \"stop.csv\""));
+    let file = file.unwrap_or_else(|e| panic!("{e}"));
+    same(&values(&expected, "left_torque"), &values(&solved(&file), "left_torque"), "in kN over cm");
+    for (title, words) in [
+        ("way [cm],force [Nm]", "`force` of `stop.csv` is in `Nm`, and the model file has N"),
+        ("way [deg],force", "`way` of `stop.csv` is in `deg`, and the model file has mm"),
+        ("way,force [counts]", "`force` of `stop.csv` is in `counts`, which is not a known unit"),
+    ] {
+        let csv = in_other_units.replace("way [cm],force [kN]", title);
+        let (_folder, file) = in_folder(&[("stop.csv", &csv)], &spring("compression = \"stop.csv\""));
+        let error = file.unwrap_err().to_string();
+        assert!(error.contains("HP0112") && error.contains(words), "{error}");
+    }
     // The other side, and a part with a prefix that has the file in a folder of its own.
     let mirrored = format!(
         "{}[mirror]\nacross = \"y\"\nnames = {{ left = \"right\" }}\n",

@@ -512,13 +512,57 @@ fn columns_of_forces_are_the_values_of_their_laws() {
     let element = |name: &str| ElementId(file.model.elements.iter().position(|e| e.name == name).unwrap());
     let forces = |value: f64| vec![(element("left_side"), value)];
     assert_eq!(found.measurements.forces, [forces(1000.0), forces(-500.0)]);
+    for (name, title, cell, law) in [
+        ("left_side", "left_side [N]", "-500", -500.0),
+        ("left_side", "left_side [kN]", "-0.5", -500.0),
+        ("left_side", "left_side [1]", "-500", -500.0),
+        ("left_align", "left_align [N*mm]", "2000", 2.0),
+        ("left_align", "left_align [kN m]", "0.002", 2.0),
+    ] {
+        let found = read(&format!("{title},left.toe\n{cell},0.1\n")).unwrap_or_else(|e| panic!("{e}"));
+        let [(force, value)] = found.measurements.forces[0][..] else { panic!("{title}") };
+        assert!(force == element(name) && (value - law).abs() < 1e-12, "{title}: {value}");
+    }
     for (text, words) in [
-        ("left_side [kN],left.toe\n1,0.1\n", "the law of a force has no unit"),
+        ("left_side [kPa],left.toe\n1,0.1\n", "`left_side` is in `kPa`, and the model file has N"),
+        ("left_align [kN],left.toe\n1,0.1\n", "`left_align` is in `kN`, and the model file has N*m"),
         ("left_side,left.toe\n,0.1\n", "line 2, column 1 (`left_side`) is missing"),
         ("left_sid,left.toe\n1,0.1\n", "did you mean `left_side`?"),
         ("left_spring,left.toe\n1,0.1\n", "neither a driver, a force nor an output"),
     ] {
         let shown = read(text).unwrap_err().render(false);
+        assert!(shown.contains(words), "{shown}");
+    }
+}
+
+#[test]
+fn forces_of_measurements_do_not_depend_on_the_magnitude_in_the_file() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../hardpoint-cli/templates/k-and-c.toml");
+    let text = std::fs::read_to_string(path).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let table = folder.path().join("measured.csv");
+    let read = |magnitude: &str, title: &str| {
+        let text = text.replace("outboard = 1,", &format!("outboard = {magnitude},"));
+        let file = parse(&text, "axle.toml").unwrap_or_else(|e| panic!("{e}"));
+        std::fs::write(&table, format!("{title},left.toe\n1.5,0.1\n")).unwrap();
+        file.measured(&table, &[]).map(|found| found.measurements.forces[0][0].1)
+    };
+    for (magnitude, title, law) in [
+        ("1", "left_side [kN]", 1500.0),
+        ("1000", "left_side [kN]", 1.5),
+        ("1000", "left_side [N]", 0.0015),
+        ("1000", "left_side [1]", 1.5),
+        ("1", "left_side", 1.5),
+    ] {
+        let found = read(magnitude, title).unwrap_or_else(|e| panic!("{e}"));
+        assert!((found - law).abs() < 1e-12 * law, "{magnitude} {title}: {found}");
+    }
+    // Newtons, or values of the law that multiplies 1 kN.
+    for (magnitude, words) in [
+        ("1000", "`left_side` has no unit, and its law multiplies 1000 N"),
+        ("0", "`left_side` is zero in the model file"),
+    ] {
+        let shown = read(magnitude, "left_side").unwrap_err().render(false);
         assert!(shown.contains(words), "{shown}");
     }
 }
