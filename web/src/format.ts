@@ -31,13 +31,14 @@ export function pretty(unit: string): string {
   return unit === '1' ? '' : unit.replaceAll('^2', '²').replaceAll('^3', '³').replaceAll('*', '·')
 }
 
-/** Unit of a derivative: `deg/s` per `mm` is `deg/(s·mm)`. */
+/** Unit of a derivative: `deg/s` per `mm` is `deg/(s·mm)`, and `deg` per `N*m` is `deg/(N·m)`. */
 export function per(unit: string, by: string): string {
   if (by === '1') return pretty(unit)
   const [top, ...below] = pretty(unit || '1').split('/')
   const divisor = by.includes('/') ? `(${pretty(by)})` : pretty(by)
   const bottom = [...below.map((part) => part.replace(/^\((.*)\)$/, '$1')), divisor]
-  return `${top || '1'}/${bottom.length > 1 ? `(${bottom.join('·')})` : bottom[0]}`
+  const isProduct = bottom.length > 1 || /^[^(]*·/.test(bottom[0])
+  return `${top || '1'}/${isProduct ? `(${bottom.join('·')})` : bottom[0]}`
 }
 
 /** `name [unit]`, as on an axis. */

@@ -197,6 +197,7 @@ fn in_either(
 /// assert_eq!(per("deg/mm", "mm"), "deg/mm^2");
 /// assert_eq!(per("deg", "1"), "deg");
 /// assert_eq!(per("deg", "mm/s"), "deg/(mm/s)");
+/// assert_eq!(per("deg", "N*m"), "deg/(N*m)");
 /// ```
 pub fn per(of: &str, by: &str) -> String {
     match (of.split_once('/'), by.contains('/')) {
@@ -206,8 +207,8 @@ pub fn per(of: &str, by: &str) -> String {
             let below = below.strip_prefix('(').and_then(|b| b.strip_suffix(')')).unwrap_or(below);
             if by.contains('/') { format!("{top}/({below}*({by}))") } else { format!("{top}/({below}*{by})") }
         }
-        (None, false) => format!("{of}/{by}"),
-        (None, true) => format!("{of}/({by})"),
+        (None, false) if !by.contains('*') => format!("{of}/{by}"),
+        (None, _) => format!("{of}/({by})"),
     }
 }
 
