@@ -403,7 +403,7 @@ class Model:
         self, outputs: str | Iterable[str], design: Design = None, *, case: str | None = None, order: int | str = 0, method: str = "auto"
     ) -> np.ndarray:
         """Derivatives of some outputs by all design variables, `[time, output, variable]`: by direct differentiation, the adjoint method,
-        or (`auto`) the cheaper of both. NaN for inadmissible variables."""
+        or (`auto`) the cheaper of both; with `[equilibrium]` always by direct differentiation. NaN for inadmissible variables."""
         names = listed("outputs", outputs)
         order = self._order(order, names)
         found = self._native.gradients(self._index(case, "gradients"), self._values(design), [self._output(name) for name in names], word("method", method))
