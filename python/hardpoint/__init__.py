@@ -27,7 +27,7 @@ from .function import Function
 from .model import Model, Output, Variable, build, parse, read
 from .plots import plot
 from .positions import Positions
-from .run import Body, BodySensitivity, DriverLoad, Metric, Reaction, Run
+from .run import Body, BodySensitivity, Deflection, DriverLoad, Metric, Reaction, Run
 from .stored import load as load_run
 from .studies import DriverTable, Map, Study, SweepResult
 from .tools import (
@@ -45,6 +45,7 @@ __all__ = [
     "Body",
     "BodySensitivity",
     "CannotFollow",
+    "Deflection",
     "Designs",
     "Diagnostic",
     "DriverLoad",

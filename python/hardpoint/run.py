@@ -117,6 +117,25 @@ class DriverLoad:
         return f"<hardpoint.DriverLoad of {self.name!r}: up to {np.abs(self.force).max(initial=0.0):.6g} {self.unit}>"
 
 
+class Deflection:
+    """Deflection of an elastic joint or bushing in one direction over the output times, `[time]` each: displacement of the second body
+    relative to the first along an axis of the joint or bushing, or rotation about it."""
+
+    def __init__(self, name: str, direction: str, units: tuple[str, str], numbers: np.ndarray):
+        self.name = name
+        self.direction = direction
+        """`x`, `y`, `z`, `about_x`, `about_y` or `about_z`."""
+        self.unit, self.force_unit = units
+        self.displacement = numbers[:, 0]
+        """Displacement or angle, zero in the design configuration."""
+        self.force = numbers[:, 1]
+        """Elastic force or moment on the second body in this direction, N or N m."""
+
+    def __repr__(self) -> str:
+        largest = np.abs(self.displacement).max(initial=0.0)
+        return f"<hardpoint.Deflection of {self.name!r}, {self.direction}: up to {largest:.6g} {self.unit}>"
+
+
 @checked
 class Run:
     """The motion of one design in one case. Arrays cover the solved output times; they are created on first use, and slices are views.
@@ -226,9 +245,9 @@ class Run:
     # Loads
 
     @cached_property
-    def _loads(self) -> tuple[np.ndarray, np.ndarray]:
-        _, joints, drivers = self.model._native.loads(self._index, list(self._native.design))
-        return joints, drivers
+    def _loads(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        _, joints, drivers, deflections = self.model._native.loads(self._index, list(self._native.design))
+        return joints, drivers, deflections
 
     def reaction(self, joint: str) -> Reaction:
         """Reaction of a joint, by its name (docs/loads.md). The model needs masses or forces."""
@@ -239,6 +258,27 @@ class Run:
         """Force or moment of a driver, by its name, with its speed and power. The model needs masses or forces."""
         k = index_of("driver", name, [one["name"] for one in self.model.drivers])
         return DriverLoad(name, self.model.drivers[k]["force_unit"], self._loads[1][:, k])
+
+    def deflection(self, force: str, direction: str) -> Deflection:
+        """Deflection of an elastic joint or bushing, by the name of the force, in a direction such as `z` or `about_x`. Without
+        `[equilibrium]` elastic joints are rigid. Derivatives are those of a measure of `type = "deflection"`."""
+        known = self.model._info["deflections"]
+        index_of("elastic joint or bushing", force, list(dict.fromkeys(one["force"] for one in known)))
+        own = {one["direction"]: k for k, one in enumerate(known) if one["force"] == force}
+        index_of(f"elastic direction of `{force}`", direction, list(own))
+        k = own[direction]
+        return Deflection(force, direction, (known[k]["unit"], known[k]["force_unit"]), self._loads[2][:, k])
+
+    @cached_property
+    def _rigid(self) -> np.ndarray | None:
+        return self.model._native.rigid(self._index, list(self._native.design), list(self.times))
+
+    def rigid_values(self, name: str) -> np.ndarray:
+        """Values of a measure, or of a coordinate of a point, for the rigid mechanism over the output times: all elastic joints are closed,
+        and the drivers move as in this run. NaN for loads and compliances. With `released` drivers there is none. Without `[equilibrium]`
+        the mechanism is rigid, and the values are those of this run."""
+        index = self.model._output(name)
+        return self.values(name) if self._rigid is None else self._rigid[index]
 
     # Metrics and diagnostics
 

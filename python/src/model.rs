@@ -7,7 +7,10 @@ use std::sync::{Arc, OnceLock};
 use hardpoint::Analysis;
 use hardpoint::joint::Quantity::{Angle, Length};
 use hardpoint::measure::outputs;
-use hardpoint::model::{BodyId, CaseId, Direction, DriverId, ElementId, JointId, OutputSource, VariableId};
+use hardpoint::model::{
+    BodyId, CaseId, Dimension, Direction, DriverId, ElasticDirection, ElementId, JointId, OutputSource,
+    VariableId,
+};
 use hardpoint::space::Vec3;
 use hardpoint::topology::{Formulation, TopologyError};
 use hardpoint_file::{Contents, ModelFile};
@@ -306,6 +309,15 @@ impl Model {
                 "force_unit": unit(units, model.force_on(d)),
             })
         });
+        let deflections = model.elastic_directions().into_iter().map(|(element, k)| {
+            let (direction, is_angle) = (ElasticDirection(k), k >= 3);
+            json!({
+                "force": model.elements[element.0].name,
+                "direction": direction.name(),
+                "unit": unit(units, direction.dimension()),
+                "force_unit": unit(units, if is_angle { Dimension::MOMENT } else { Dimension::FORCE }),
+            })
+        });
         let hardpoints = model.hardpoints.iter().filter(|h| !h.unnamed).map(|h| {
             let place = h.position.to_array().map(|x| units.from_si(Length, x));
             json!({ "name": h.name, "place": place })
@@ -322,6 +334,7 @@ impl Model {
             "variables": variables.collect::<Vec<_>>(),
             "outputs": outputs.collect::<Vec<_>>(),
             "has_loads": model.has_loads(),
+            "deflections": deflections.collect::<Vec<_>>(),
             "motions": motions.collect::<Vec<_>>(),
             "grids": model.grids.iter().map(|g| &g.name).collect::<Vec<_>>(),
             "remarks": file.remarks.iter().map(|d| diagnostic_json(file, d)).collect::<Vec<Value>>(),

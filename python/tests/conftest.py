@@ -11,6 +11,7 @@ import hardpoint
 
 ROOT = Path(__file__).resolve().parents[2]
 MODELS = ROOT / "models"
+K_AND_C = ROOT / "crates/hardpoint-cli/templates/k-and-c.toml"
 REFERENCE = json.loads((ROOT / "crates/hardpoint-file/tests/reference.json").read_text())
 """Reference cases in SI, shared with the Rust tests."""
 

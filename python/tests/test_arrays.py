@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import hardpoint
-from conftest import MODELS
+from conftest import K_AND_C, MODELS
 
 DESIGNS = [[0.1], [0.2]]
 NAMES = ["tie_rod_outer_z"]
@@ -22,10 +22,12 @@ ASKED = {
         "values": ("toe",),
         "sensitivity": ("toe", NAMES[0]),
         "sensitivities": ("toe", NAMES),
+        "rigid_values": ("toe",),
     },
     "Positions": {"position": ("knuckle",), "quaternion": ("knuckle",)},
     "Reaction": {},
     "DriverLoad": {},
+    "Deflection": {},
     "Body": {},
     "BodySensitivity": {},
     "Designs": {"metric": (next(iter(hardpoint.read(MODELS / "studies/strut_toe.toml").metrics("bump"))),)},
@@ -45,6 +47,7 @@ def results(strut):
         "Positions": strut.at(rack_drive=[1.0, 2.0]),
         "Reaction": press.reaction("A"),
         "DriverLoad": press.driver("motor"),
+        "Deflection": hardpoint.read(K_AND_C).run(case="steer").deflection("left_lca_rear", "z"),
         "Body": run.body("knuckle" if "knuckle" in strut.bodies else strut.bodies[0]),
         "BodySensitivity": run.body_sensitivity(strut.bodies[0], NAMES[0]),
         "Designs": toe.designs([[v.drawn for v in toe.variables.values()]] * 2, "toe", case="bump"),

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import hardpoint
-from conftest import MODELS, ROOT
+from conftest import K_AND_C, MODELS, ROOT
 
 
 @pytest.fixture(scope="module")
@@ -217,6 +217,24 @@ def test_loads_by_name_are_those_of_the_measures_and_of_the_table(press, command
             assert np.array_equal(found, reaction.force[:, k], equal_nan=True), joint["name"]
     with pytest.raises(hardpoint.UsageError, match="no joint named"):
         run.reaction("nothing")
+
+
+def test_deflections_and_the_rigid_mechanism_of_a_run():
+    axle = hardpoint.read(K_AND_C)
+    run = axle.run(case="parallel_travel")
+    found = run.deflection("left_lca_rear", "z")
+    assert (found.unit, found.force_unit) == ("mm", "N")
+    # 300 N/mm, against the displacement.
+    assert found.force == pytest.approx(-300 * found.displacement, rel=1e-9)
+    assert np.abs(found.displacement).max() > 0.01
+    rigid = run.rigid_values("left.toe")
+    of_range = {metric["name"]: metric["rigid"] for metric in run.summary()["metrics"]}["toe_over_travel"]
+    assert np.ptp(rigid) == pytest.approx(of_range, rel=1e-3) and np.abs(rigid - run.values("left.toe")).max() > 1e-3
+    assert np.isnan(run.rigid_values("left_toe_per_side")).all()
+    with pytest.raises(hardpoint.UsageError, match="left_lca_rear"):
+        run.deflection("left_lca_rea", "z")
+    with pytest.raises(hardpoint.UsageError, match="along"):
+        run.deflection("left_lca_rear", "along")
 
 
 def test_a_model_without_loads_has_no_reactions(strut):

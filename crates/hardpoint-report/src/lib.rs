@@ -52,7 +52,7 @@ pub mod page;
 pub mod payload;
 pub mod ranges;
 mod record;
-mod rigid;
+pub mod rigid;
 mod shifts;
 pub mod sketch;
 pub mod study;

@@ -15,6 +15,16 @@ pub(crate) fn solve(
     formulation: Formulation,
     times: &[f64],
 ) -> Option<Result<Solution, String>> {
+    solve_at(file, &[], formulation, times)
+}
+
+/// Solution of the rigid mechanism of a design with variable k at `design[k]`; see [`values`] for its numbers.
+pub fn solve_at(
+    file: &ModelFile,
+    design: &[f64],
+    formulation: Formulation,
+    times: &[f64],
+) -> Option<Result<Solution, String>> {
     let model = &file.model;
     let equilibrium = model.equilibrium.as_ref()?;
     let missing = |why: &str| Err(format!("The rigid mechanism is not shown: {why}."));
@@ -25,7 +35,7 @@ pub(crate) fn solve(
     }
     let rigid = rigid(model, times);
     let solved = match Analysis::with(&rigid, formulation) {
-        Ok(analysis) => analysis.solve(Run::new().without_sensitivities()),
+        Ok(analysis) => analysis.solve(Run::new().at(design).without_sensitivities()),
         Err(fault) => return Some(missing(&diagnose::topology_fault(file, &fault).message)),
     };
     let stop = StopFact::of(file, &solved).filter(|_| solved.motion.is_empty());
@@ -34,6 +44,15 @@ pub(crate) fn solve(
 
 fn rigid(model: &Model, times: &[f64]) -> Model {
     Model { equilibrium: None, times: times.to_vec(), ..model.clone() }
+}
+
+/// Values of all outputs of the rigid mechanism at time k, SI; NaN for loads and compliances, which it does not have.
+pub fn values<'s>(model: &'s Model, solved: &'s Solution, k: usize) -> impl Iterator<Item = f64> + 's {
+    let outputs = solved.measured.outputs.iter().enumerate();
+    outputs.map(move |(m, output)| match is_kinematic(model, output.source) {
+        true => solved.measured.value(k, m)[0],
+        false => f64::NAN,
+    })
 }
 
 /// Values of the metrics of the rigid mechanism, SI; `None` where there is none.

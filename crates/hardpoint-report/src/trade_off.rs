@@ -545,7 +545,10 @@ impl TradeOffFacts {
                 metric: k > 0,
                 nominal: None,
                 target: g.target.filter(|_| metric.is_some()),
-                values: metric.unwrap_or_else(|| self.points.iter().map(|p| p.goals[k]).collect()).into_iter().collect(),
+                values: metric
+                    .unwrap_or_else(|| self.points.iter().map(|p| p.goals[k]).collect())
+                    .into_iter()
+                    .collect(),
             }
         };
         let variable = |(k, v): (usize, &TradedVariable)| SweepAxis {

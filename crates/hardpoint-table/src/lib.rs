@@ -20,8 +20,8 @@ pub mod figures;
 pub mod npy;
 pub mod results;
 pub mod series;
-pub mod tracks;
 mod symbols;
+pub mod tracks;
 mod units;
 
 pub use symbols::Unit;

@@ -3,7 +3,8 @@
 use hardpoint::draft::{DirectionDraft, FieldDraft, FieldKind, MeasureField, NumberDraft, RayDraft};
 use hardpoint::law::Law;
 use hardpoint::model::{
-    Axes, CoupledStiffness, ElementUnit, JacobianValue, OrientationAngle, ReactionPart, WheelPoint,
+    Axes, CoupledStiffness, ElasticDirection, ElementUnit, JacobianValue, OrientationAngle, ReactionPart,
+    WheelPoint,
 };
 
 use crate::values::{
@@ -71,6 +72,11 @@ const JACOBIAN_VALUE: Shape = Shape::Any(
     "Quantity that a dexterity takes from the singular values.",
     &[Shape::Words(JacobianValue::WORDS)],
 );
+const ELASTIC_DIRECTION: Shape = Shape::Any(
+    "ElasticDirection",
+    "A direction of an elastic joint or bushing.",
+    &[Shape::Words(ElasticDirection::WORDS)],
+);
 const POINTS: Shape = Shape::list(&POINT_REF);
 const DRIVERS: Shape = Shape::list(&DRIVER);
 const AXES: Shape = Shape::Any("Axes", "Along which axes something is given.", &[Shape::Words(Axes::WORDS)]);
@@ -100,6 +106,7 @@ pub(super) fn key(field: &MeasureField) -> Key {
         FieldKind::OrientationAngle => (ORIENTATION_ANGLE, "\"yaw\""),
         FieldKind::Expression => (Shape::Expression, "\"left.toe + right.toe\""),
         FieldKind::ReactionPart => (REACTION_PART, "\"radial\""),
+        FieldKind::ElasticDirection => (ELASTIC_DIRECTION, "\"z\""),
         FieldKind::Axes => (AXES, "\"body\""),
         FieldKind::WheelPoint => (WHEEL_POINT, "\"centre\""),
         FieldKind::Force => (Shape::Name("a force"), "\"spring\""),
@@ -174,6 +181,9 @@ pub(super) fn own_field(
             r.word_of(fields, key).map(|k| FieldDraft::Jacobian(JacobianValue::at(k)))
         }
         FieldKind::Drivers => r.list_of_names(fields, key, "all").map(FieldDraft::Names),
+        FieldKind::ElasticDirection => {
+            r.word_of(fields, key).map(|k| FieldDraft::Elastic(ElasticDirection::at(k)))
+        }
         FieldKind::Axes => r.word_of(fields, key).map(|k| FieldDraft::Axes(Axes::at(k))),
         FieldKind::WheelPoint => r.word_of(fields, key).map(|k| FieldDraft::WheelPoint(WheelPoint::at(k))),
         FieldKind::Number(unit) => {

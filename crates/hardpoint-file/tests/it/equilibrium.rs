@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use hardpoint::load::LargestDeflection;
-use hardpoint::model::{Model, Reduction, VariableId};
+use hardpoint::model::{ElasticDirection, ElementId, Model, Reduction, VariableId};
 use hardpoint::motion::StopKind;
 use hardpoint::run::{MetricUse, metrics, misfits, peaks};
 use hardpoint::topology::Formulation;
@@ -489,6 +489,61 @@ fn sensitivities_of_deflections_are_those_of_solved_designs_in_both_formulations
             }
             assert!(largest > 0.0, "{}", model.variables[v].name);
         }
+    }
+}
+
+#[test]
+fn deflections_are_measures_with_the_values_and_derivatives_of_the_loads() {
+    let at = State { bump: 0.03, road: [1500.0, -900.0], align: 30.0, rack: 0.002 };
+    for text in [wishbone(at, &AS_PUBLISHED), wishbone_on_axes_through_hardpoints(true)] {
+        let plain = file(&text).model;
+        let directions = plain.elastic_directions();
+        let name = |(e, k): (ElementId, usize)| format!("{}_{k}", plain.elements[e.0].name);
+        let measure = |at: &(ElementId, usize)| {
+            let (element, direction) = (&plain.elements[at.0.0].name, ElasticDirection(at.1).name());
+            format!(
+                "{} = {{ type = \"deflection\", force = \"{element}\", direction = \"{direction}\" }}\n",
+                name(*at)
+            )
+        };
+        let mut measures: String = directions.iter().map(measure).collect();
+        let first = name(directions[0]);
+        measures += &format!("per_side = {{ type = \"compliance\", of = \"{first}\", force = \"side\" }}\n");
+        let model = file(&text.replace("[measures]\n", &format!("[measures]\n{measures}"))).model;
+        for formulation in [Formulation::Relative, Formulation::Absolute] {
+            let solution = Analysis::with(&model, formulation).unwrap().run();
+            for (at, largest) in directions.iter().zip(deflections(&model, formulation)) {
+                let m = solution.measured.index(&name(*at)).unwrap();
+                // Round-off of positions, in proportion to the mechanism's size.
+                let displacement = largest.deflection.displacement;
+                near(solution.measured.value(0, m)[0], displacement, 1e-14, &name(*at));
+                for (v, d) in largest.d.iter().enumerate() {
+                    let found = solution.measured.d(0, VariableId(v), m)[0];
+                    near(found, *d, 1e-9 * d.abs() + 1e-12, &format!("d {}", name(*at)));
+                }
+            }
+        }
+        verify_all(&model);
+    }
+}
+
+#[test]
+fn deflections_that_do_not_exist_are_reported() {
+    let at = State { bump: 0.03, road: [1500.0, -900.0], align: 30.0, rack: 0.002 };
+    let text = wishbone(at, &AS_PUBLISHED);
+    for (measure, change, words) in [
+        ("force = \"spring\", direction = \"x\"", None, "`spring` has no deflections along and about axes"),
+        ("force = \"lca_front_bush\", direction = \"y\"", Some(", y = 8000000.0"), "is rigid there"),
+        ("force = \"lca_front_bush\", direction = \"along\"", None, "`about_z`"),
+    ] {
+        let measures = format!("[measures]\nown = {{ type = \"deflection\", {measure} }}\n");
+        let mut text = text.replace("[measures]\n", &measures);
+        if let Some(stiffness) = change {
+            assert!(text.contains(stiffness));
+            text = text.replacen(stiffness, "", 1);
+        }
+        let error = parse(&text, "wishbone.toml").unwrap_err().render(false);
+        assert!(error.contains(words), "{error}");
     }
 }
 

@@ -63,6 +63,17 @@ expression = "x*sin(about) + 2*x"
 [measures.power]
 type = "expression"
 expression = "v*a"
+
+[forces.own_bush]
+type = "bushing"
+from = { body = "FRAMES0", at = "POINTS2" }
+to = { body = "FRAMES1", at = "POINTS2" }
+about_z = 1
+
+[measures.turn]
+type = "deflection"
+force = "own_bush"
+direction = "about_z"
 "#;
 
 /// Per model: a moving body and the next one, and three of its hardpoints: one end, the joint between them, the other
@@ -84,7 +95,9 @@ fn with_measures((name, bodies, points): &(&str, [&str; 2], [&str; 3])) -> Model
         more = more.replace(&format!("POINTS{}", k + 1), point);
     }
     // Names of their own.
-    for measure in ["mu", "between", "about", "v", "omega", "a", "x", "xdot", "turning", "mixed", "power"] {
+    for measure in
+        ["mu", "between", "about", "v", "omega", "a", "x", "xdot", "turning", "mixed", "power", "turn"]
+    {
         more = more.replace(&format!("[measures.{measure}]"), &format!("[measures.own_{measure}]"));
         more = more.replace(&format!("of = \"{measure}\""), &format!("of = \"own_{measure}\""));
     }

@@ -341,7 +341,8 @@ fn swinging(drivers: &str, measures: &str, forces: &str) -> String {
          mass_b = {{ type = \"rigid\", centre = {{ body = \"b\", at = <20 410> }}, mass = 4, ixx = 0.02, iyy = 0.03, izz = 0.04 }}\n\
          mass_c = {{ type = \"rigid\", centre = {{ body = \"c\", at = <80 440> }}, mass = 2, ixx = 0.02, iyy = 0.03, izz = 0.04 }}\n\
          [forces]\nspring = {{ type = \"spring\", from = {{ body = \"ground\", at = <0 200> }}, to = \"p\", stiffness = 20 }}\n\
-         soft = {{ type = \"elastic_joint\", joint = \"hinge\", x = 1000, y = 3000, z = 2000 }}\n{forces}\n\
+         soft = {{ type = \"elastic_joint\", joint = \"hinge\", x = 1000, y = 3000, z = 2000 }}\n\
+         bush = {{ type = \"bushing\", from = {{ body = \"a\", at = <40 400> }}, to = {{ body = \"c\", at = <40 400> }}, x = 2 }}\n{forces}\n\
          [measures]\nbase = {{ type = \"position\", point = \"p\", along = <0.2 0.7> }}\n\
          far = {{ type = \"distance\", from = \"p\", to = {{ body = \"ground\", at = <0 200> }} }}\n\
          moment = {{ type = \"driver_force\", driver = \"swing\" }}\npush = {{ type = \"driver_force\", driver = \"way\" }}\n{measures}"
@@ -382,6 +383,9 @@ fn the_planar_shorthand_of_every_measure_equals_its_long_form() {
             "driver_force" | "driver_power" => &["driver = \"turn\""],
             "reaction" => &["joint = \"pin\", part = \"force\"", "joint = \"slide\", part = \"torque\""],
             "spring_force" => &["force = \"spring\""],
+            "deflection" => {
+                &["force = \"soft\", direction = \"about_z\"", "force = \"bush\", direction = \"x\""]
+            }
             "kinetic_energy" => &["body = \"c\""],
             "shaking_force" => &["along = <0.3 0.9>"],
             "shaking_moment" => &["about = { body = \"ground\", at = <10 30> }<along>"],

@@ -739,6 +739,12 @@ pub(crate) fn measures(hold: Hold<'_>) {
                 ("joint = \"left_rail\", part = \"torque\"", &[0, 1, 2]),
             ],
             "spring_force" => vec![("force = \"left_spring\"", &[]), ("force = \"left_twist\"", &[0, 1, 2])],
+            "deflection" => vec![
+                ("force = \"left_soft\", direction = \"about_z\"", &[]),
+                // Its axes are the global ones on both sides.
+                ("force = \"left_bush\", direction = \"x\"", &[0]),
+                ("force = \"left_bush\", direction = \"about_x\"", &[1, 2]),
+            ],
             "kinetic_energy" => vec![("body = \"left_b\"", &[])],
             // What the whole mechanism puts on ground is that of both sides.
             "shaking_force" => vec![("along = [0.3, 0.2, 0.9]", &[])],
@@ -763,7 +769,8 @@ pub(crate) fn measures(hold: Hold<'_>) {
                      [masses]\nleft_mass = {{ type = \"rigid\", centre = {{ body = \"left_b\", at = [10, 440, 10] }}, mass = 4, ixx = 0.02, iyy = 0.03, izz = 0.04 }}\n\
                      [forces]\nleft_spring = {{ type = \"spring\", from = {{ body = \"ground\", at = [0, 200, 300] }}, to = \"left_p\", stiffness = 20 }}\n\
                      left_twist = {{ type = \"torsion_spring\", joint = \"left_tube\", coordinate = \"angle\", stiffness = 0.3, equilibrium = 4 }}\n\
-                     left_soft = {{ type = \"elastic_joint\", joint = \"left_hinge\", x = 1000, y = 3000, z = 2000 }}\n",
+                     left_soft = {{ type = \"elastic_joint\", joint = \"left_hinge\", x = 1000, y = 3000, z = 2000 }}\n\
+                     left_bush = {{ type = \"bushing\", from = {{ body = \"left_a\", at = [60, 420, 10] }}, to = {{ body = \"left_c\", at = [60, 420, 10] }}, x = 2 }}\n",
                         kind.name
                     ),
                 );

@@ -37,18 +37,26 @@ impl<T: Real> Geometry<T> {
     /// Markers between which an elastic joint opens: those of the joint, but marker j has the axes of marker i in the
     /// design configuration also if the joint's second axis is on body j.
     pub(crate) fn elastic_markers(&self, model: &Model, joint: JointId) -> [Pose<T>; 2] {
-        let Joint { kind, bodies, .. } = &model.joints[joint.0];
-        let [m_i, m_j] = self.markers[joint.0];
-        let rot = match kind.axis2 {
-            // A_j^T A_i C_i in the design configuration
-            Need::OnBodyJ => {
-                let [frame_i, frame_j] = number::both(*bodies, |b| model.bodies[b.0].frame.rot);
-                (frame_j.transpose() * frame_i).spread() * m_i.rot
-            }
-            Need::Required | Need::Optional | Need::Orienting | Need::Unused => m_j.rot,
-        };
-        [m_i, Pose { rot, r: m_j.r }]
+        elastic_markers(model, joint, self.markers[joint.0])
     }
+}
+
+/// Markers between which an elastic joint with these markers opens.
+pub(super) fn elastic_markers<T: Real>(
+    model: &Model,
+    joint: JointId,
+    [m_i, m_j]: [Pose<T>; 2],
+) -> [Pose<T>; 2] {
+    let Joint { kind, bodies, .. } = &model.joints[joint.0];
+    let rot = match kind.axis2 {
+        // A_j^T A_i C_i in the design configuration
+        Need::OnBodyJ => {
+            let [frame_i, frame_j] = number::both(*bodies, |b| model.bodies[b.0].frame.rot);
+            (frame_j.transpose() * frame_i).spread() * m_i.rot
+        }
+        Need::Required | Need::Optional | Need::Orienting | Need::Unused => m_j.rot,
+    };
+    [m_i, Pose { rot, r: m_j.r }]
 }
 
 /// Body-fixed data that measures use.
@@ -58,7 +66,7 @@ pub(crate) struct BodyFixed<T> {
     pub points: Vec<Vec3<T>>,
     /// Per measure: directions that it depends on, unit vectors in their bodies' frames.
     pub directions: Vec<[Option<Vec3<T>>; 2]>,
-    /// Per measure of a joint's coordinate: marker i in body i and marker j in body j.
+    /// Per measure of a joint's coordinate or of a deflection: marker i in body i and marker j in body j.
     pub markers: Vec<Option<[Pose<T>; 2]>>,
     /// Per shape of the model: the numbers that no point gives.
     pub shapes: Vec<ShapeGeometry<T>>,

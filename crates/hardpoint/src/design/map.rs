@@ -17,15 +17,18 @@
 use crate::constraint::{MarkerPair, Row};
 use crate::design::{BodyFixed, DesignVelocity, Geometry, JointConstants, MarkerVelocity, ShapeGeometry};
 use crate::law::Law;
+use crate::model::element::ActsOn;
 use crate::model::{
     BodyId, Change, DesignVariable, Direction, Driver, DriverId, ElementId, HardpointId, Joint, JointId,
-    Length, Measure, Model, NumberId, PointId, Shape, ShapeKind, SharedModel, Source, Target, VariableId,
+    Length, Measure, MeasureKind, Model, NumberId, PointId, Shape, ShapeKind, SharedModel, Source, Target,
+    VariableId,
 };
 use crate::number::{self, Dual, Real};
 use crate::space::{Mat3, Pose, Twist, Vec3};
 
 use super::change::Effect;
 use super::formulas::Formulas;
+use super::geometry;
 
 /// Entries of a model that its variables change, grouped by kind; collected once for many designs.
 #[derive(Clone, Debug)]
@@ -119,6 +122,9 @@ impl<'m> DesignMap<'m> {
     pub(crate) fn fixed<T: Real>(&self, values: &[T]) -> BodyFixed<T> {
         let (model, design) = (self.model(), PlacedDesign::new(self, values.to_vec()));
         let markers = |m: &Measure| {
+            if let MeasureKind::Deflection { force, .. } = m.kind {
+                return design.elastic_markers(force.0);
+            }
             let joint = m.kind.joint_value()?;
             Some(number::both([0, 1], |e| design.marker(joint.0, e)))
         };
@@ -527,6 +533,32 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
         let (bodies, nominal, axes) = model.axes_of(e)?;
         let rot = self.followed(nominal.spread(), axes, &self.values);
         Some(number::both(bodies, |body| self.frame(body).rot.transpose() * rot))
+    }
+
+    /// Returns the markers between which an elastic joint or bushing deflects; those of a bushing without axes have the
+    /// global ones in the design configuration.
+    fn elastic_markers(&self, e: ElementId) -> Option<[Pose<T>; 2]> {
+        let model = self.design_map.model();
+        match model.elements[e.0].kind.force(model)?.acts_on {
+            ActsOn::Joint(joint) => {
+                let markers = number::both([0, 1], |end| self.marker(joint.0, end));
+                Some(geometry::elastic_markers(model, joint, markers))
+            }
+            ActsOn::Points(points) => {
+                let axes = self.axes(e);
+                Some(number::both([0, 1], |end| {
+                    let point = points[end].0;
+                    let frame = self.frame(model.points[point].body);
+                    let rot = axes.map_or_else(|| frame.rot.transpose(), |axes| axes[end]);
+                    Pose { rot, r: self.point(point) }
+                }))
+            }
+            ActsOn::Line(_)
+            | ActsOn::Point(_)
+            | ActsOn::Wheel(_)
+            | ActsOn::Body(_)
+            | ActsOn::Coordinate(..) => None,
+        }
     }
 
     /// Returns a number of a mass or force, SI.

@@ -5,9 +5,9 @@ use crate::expression::Expression;
 use crate::joint::VectorKind;
 use crate::law::Law;
 use crate::model::{
-    Axes, AxleMeasure, BodyId, ClearanceId, Combination, Direction, DriverId, ElementId, ElementUnit,
-    JacobianValue, JointId, MeasureKind, OrientationAngle, OutputSource, PointId, Ray, ReactionPart, Solid,
-    WheelId, WheelMeasure, measures,
+    Axes, AxleMeasure, BodyId, ClearanceId, Combination, Direction, DriverId, ElasticDirection, ElasticId,
+    ElementId, ElementUnit, JacobianValue, JointId, MeasureKind, OrientationAngle, OutputSource, PointId,
+    Ray, ReactionPart, Solid, WheelId, WheelMeasure, measures,
 };
 use crate::space::Vec3;
 
@@ -72,6 +72,8 @@ pub enum FieldKind {
     ReactionPart,
     /// One of [`JacobianValue::WORDS`].
     JacobianValue,
+    /// One of [`ElasticDirection::WORDS`].
+    ElasticDirection,
     /// One of [`Axes::WORDS`].
     Axes,
     /// One of [`WheelPoint::WORDS`](crate::model::WheelPoint::WORDS).
@@ -121,6 +123,8 @@ pub enum FieldDraft {
     Part(ReactionPart),
     /// Part of a Jacobian's singular values.
     Jacobian(JacobianValue),
+    /// Direction of an elastic joint or bushing.
+    Elastic(ElasticDirection),
     /// Axes in which a vector is given.
     Axes(Axes),
     /// Point of a wheel at which a force acts.

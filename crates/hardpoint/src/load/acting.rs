@@ -12,9 +12,7 @@ use crate::model::{
     SpringTable, UnitForce, Wheel, WheelId, elements, if_mass,
 };
 use crate::number::{Dual, each};
-use crate::space::{Mat3, Pose, Real, Twist, Vec3, Wrench};
-
-use super::opening::Opening;
+use crate::space::{Mat3, Opening, Pose, Real, Twist, Vec3, Wrench};
 
 /// Pose, velocity and acceleration of a body.
 #[derive(Clone, Copy, Debug)]

@@ -20,7 +20,6 @@
 //! | `virtual_motion` | Y | virtual motion of a load |
 //! | `friction` | M = -c N(T) | Coulomb friction in joints |
 //! | `measures` | | evaluation of load measures |
-//! | `opening` | e, l_a | displacement of two markers along six coordinates |
 //! | `opening_loads` | r, K | forces that hold the openings of a mechanism |
 //!
 //! `acting`, `equilibrium`, `derivatives`, `virtual_motion` and `measures` are generic over the number type.
@@ -34,7 +33,6 @@ mod friction;
 mod gradient;
 mod inertia;
 mod measures;
-mod opening;
 mod opening_loads;
 mod program;
 mod results;

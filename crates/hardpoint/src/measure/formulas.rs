@@ -4,12 +4,13 @@ use crate::clearance::{NearestPair, PlacedShapes};
 use crate::constraint::Row;
 use crate::design::BodyFixed;
 use crate::joint::Need;
+use crate::model::element::ActsOn;
 use crate::model::{
-    ArmPlane, AxleMeasure, BodyId, ClearanceId, JointId, MeasureKind, Model, OutputSource, PointId, Ray,
-    WheelId, loads,
+    ArmPlane, AxleMeasure, BodyId, ClearanceId, ElasticDirection, ElementId, JointId, MeasureKind, Model,
+    OutputSource, PointId, Ray, WheelId, loads,
 };
 use crate::number::{self, Real};
-use crate::space::{Pose, Vec3};
+use crate::space::{Opening, Pose, Vec3};
 
 use super::wheel::{WheelAt, camber, toe};
 
@@ -126,6 +127,10 @@ impl<'a, T: Real> Instant<'a, T> {
             MeasureKind::Clearance { of } => {
                 let Self { model, fixed, poses, .. } = *self;
                 PlacedShapes { model, fixed, bodies: poses }.clearance(*of, self.nearest)
+            }
+            MeasureKind::Deflection { force, direction } => {
+                let within = self.deflection(k, force.0, *direction);
+                self.whole_turns.get(k).map_or(within, |turns| within + *turns)
             }
             MeasureKind::Articulation { joint, axis } => self.articulation(k, *joint, axis.is_some()),
             MeasureKind::Rate { of } => self.output(*of).rate(),
@@ -279,6 +284,18 @@ impl<'a, T: Real> Instant<'a, T> {
         let pairs = number::each(&[0, 1, 2], |c| (axis(0, c), axis(1, c)));
         let [x, y, z] = number::each(&pairs, |(a, b)| (a.cross(b), a.dot(b)));
         angle_between(x.0 + y.0 + z.0, x.1 + y.1 + z.1 - T::constant(1.0))
+    }
+
+    /// Displacement between both markers of an elastic joint or bushing in one direction.
+    fn deflection(&self, k: usize, element: ElementId, direction: ElasticDirection) -> T {
+        let force = self.model.elements[element.0].kind.force(self.model);
+        let acts_on = force.expect("an elastic joint or bushing").acts_on;
+        let markers = self.fixed.markers[k].expect("a measure of a deflection");
+        let bodies = acts_on.bodies(self.model);
+        let [i, j] = number::both([0, 1], |end| self.poses[bodies[end].0].compose(markers[end]));
+        let is_cross = matches!(acts_on, ActsOn::Joint(joint) if self.model.joints[joint.0].kind.is_cross());
+        let between = if is_cross { Opening::of_cross } else { Opening::between };
+        between(&i, &j, T::zero()).coordinates[direction.0]
     }
 
     /// Length of a vector; without derivatives where it is zero but for round-off.

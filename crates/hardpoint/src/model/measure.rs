@@ -293,6 +293,20 @@ macro_rules! measures {
         positive: "",
         words: format!("articulation of joint `{}`", model.joints[joint.0].name);
 
+    /// Deflection of an elastic joint or bushing in one direction: displacement of its second body relative to the first
+    /// along an axis of the joint or bushing, or rotation about it as the Cardan angle of its law.
+    Deflection "deflection" [Pose, NotDrivable, Polar, normal: false] {
+        /// Name of the elastic joint or bushing.
+        force: String => ElasticId,
+        /// Direction: along or about an axis, which turns with the first body.
+        direction: ElasticDirection => ElasticDirection,
+    } |_, MeasureWords { model, .. }|
+        dimension: direction.dimension(),
+        known: counted_if(direction.is_counted()),
+        kinks: SMOOTH,
+        positive: "",
+        words: format!("deflection of `{}` {}", model.elements[force.0.0].name, direction.words());
+
     /// Toe of a wheel, positive for toe-in. It is a left wheel where its spin axis points to +y in the design
     /// configuration, else a right one.
     Toe "toe" [Pose, Drivable, Polar, normal: false] {
@@ -703,6 +717,13 @@ impl References for WheelId {
     }
 }
 
+impl References for ElasticId {
+    fn bodies(&self, model: &Model) -> Vec<BodyId> {
+        let force = model.elements[self.0.0].kind.force(model);
+        force.map_or_else(Vec::new, |force| force.acts_on.bodies(model).to_vec())
+    }
+}
+
 impl References for Vec<PointId> {
     fn bodies(&self, model: &Model) -> Vec<BodyId> {
         self.iter().map(|p| model.points[p.0].body).collect()
@@ -787,6 +808,7 @@ impl References for Option<DriverId> {}
 impl References for Vec<DriverId> {}
 impl References for Option<Vec<DriverId>> {}
 impl References for JacobianValue {}
+impl References for ElasticDirection {}
 
 /// Values at which a measure without kinks has none.
 const SMOOTH: &[f64] = &[];
@@ -1101,6 +1123,50 @@ impl OrientationAngle {
             (Angles::RollPitchYaw, 1) => "pitch",
             (Angles::RollPitchYaw, _) => "yaw",
         }
+    }
+}
+
+/// An elastic joint or a bushing: a force that resists displacements along and about the axes of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ElasticId(pub ElementId);
+
+/// Direction of an elastic joint or bushing: 0 to 2 along its axes x, y and z, 3 to 5 about them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ElasticDirection(pub usize);
+
+impl ElasticDirection {
+    /// As model files write them, and what they are.
+    pub const WORDS: &[(&str, &str)] = &[
+        ("x", "The displacement along x."),
+        ("y", "The displacement along y."),
+        ("z", "The displacement along z, the axis of a joint."),
+        ("about_x", "The angle about x, the first of three."),
+        ("about_y", "The second one, about the new y: -90 to 90 deg."),
+        ("about_z", "The third one, about the new z, the axis of a joint; counted through whole turns."),
+    ];
+
+    /// That of a place in [`WORDS`](Self::WORDS).
+    pub fn at(word: usize) -> Self {
+        Self(word)
+    }
+
+    /// As model files write it.
+    pub fn name(self) -> &'static str {
+        Self::WORDS[self.0].0
+    }
+
+    /// Dimension of the deflection.
+    pub fn dimension(self) -> Dimension {
+        if self.0 < 3 { Dimension::LENGTH } else { Dimension::ANGLE }
+    }
+
+    /// True if it is counted through whole turns.
+    pub(crate) fn is_counted(self) -> bool {
+        self.0 == 5
+    }
+
+    fn words(self) -> &'static str {
+        ["along x", "along y", "along z", "about x", "about y", "about z"][self.0]
     }
 }
 

@@ -40,8 +40,8 @@ pub(crate) use element::{each_number, elements, if_mass};
 pub use formula::{Formula, NamedNumber, Source, Target};
 pub use joint_limit::{JointLimit, LimitEnd};
 pub use measure::{
-    Combination, Dimension, JacobianValue, KnownOrders, Measure, MeasureKind, OrientationAngle, OutputSource,
-    Ray, ReactionPart,
+    Combination, Dimension, ElasticDirection, ElasticId, JacobianValue, KnownOrders, Measure, MeasureKind,
+    OrientationAngle, OutputSource, Ray, ReactionPart,
 };
 pub(crate) use measure::{UnitForce, loads, measures, of_bodies, of_bodies_but_joints};
 pub use measured::{Measurements, Reading};

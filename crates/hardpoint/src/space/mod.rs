@@ -5,6 +5,7 @@
 
 mod euler;
 mod mat3;
+mod opening;
 mod pose;
 mod quat;
 mod surface;
@@ -13,6 +14,7 @@ mod vec3;
 
 pub use euler::{Angles, euler_313_from_rotation, euler_rates, rotation_from_euler_313};
 pub use mat3::Mat3;
+pub(crate) use opening::Opening;
 pub use pose::Pose;
 pub use quat::Quat;
 pub(crate) use surface::distinct;

@@ -6,7 +6,7 @@
 //! on them has a potential if its stiffnesses are symmetric. Turns about z may have any size, and are counted; alpha
 //! and beta stay below 90 deg, alpha of a cross below 180 deg.
 
-use crate::space::{Pose, Real, Vec3, Wrench};
+use super::{Pose, Real, Vec3, Wrench};
 
 /// Coordinates of marker j relative to marker i: x, y, z, m; alpha, beta, gamma, rad.
 pub(crate) struct Opening<T> {

@@ -6,12 +6,13 @@ use crate::draft::{
     RayDraft, Section,
 };
 use crate::expression::Expression;
-use crate::model::element::{Compliance, CoupledStiffness};
+use crate::joint::free_directions;
+use crate::model::element::{ActsOn, Compliance, CoupledStiffness, Properties};
 use crate::model::{
     Axes, AxleMeasure, BodyId, CaseId, ClearanceId, Combination, CurvePart, Dimension, Direction, DriverId,
-    Element, ElementId, JacobianValue, JointId, Measure, MeasureKind, Metric, MomentTable, NumberId,
-    OrientationAngle, OutputSource, PointId, Ray, ReactionPart, Solid, SpringTable, WheelId, WheelMeasure,
-    WheelPoint, loads, of_bodies,
+    ElasticDirection, ElasticId, Element, ElementId, JacobianValue, JointId, Measure, MeasureKind, Metric,
+    MomentTable, NumberId, OrientationAngle, OutputSource, PointId, Ray, ReactionPart, Solid, SpringTable,
+    WheelId, WheelMeasure, WheelPoint, loads, of_bodies,
 };
 use crate::space::Vec3;
 
@@ -35,6 +36,7 @@ impl Checker<'_> {
         let kind = m.kind.resolve(&mut MeasureCheck::new(self, &m.name, here))?;
         self.check_load(&kind, m, here);
         self.check_articulation(&kind, here);
+        self.check_deflection(&kind, here);
         if let MeasureKind::Distance { from, to } = kind {
             let [a, b] = [from, to].map(|p| self.model.points[p.0].clone());
             let at_one_place = self.separation(a.at, b.at) == Some(None);
@@ -68,6 +70,37 @@ impl Checker<'_> {
             false => format!("name one of its coordinates: {}", coordinates.join(", ")),
         };
         self.fault("HP0265", here.key("joint"), message).note(note).help(help);
+    }
+
+    /// HP0250: the deflection of an elastic joint in a direction in which it is rigid.
+    fn check_deflection(&mut self, kind: &MeasureKind, here: Here) {
+        let MeasureKind::Deflection { force: ElasticId(element), direction } = kind else { return };
+        let Element { name, kind, .. } = &self.model.elements[element.0];
+        let Some(Properties { acts_on: ActsOn::Joint(joint), .. }) = kind.force(&self.model) else { return };
+        let joint = &self.model.joints[joint.0];
+        let is_free = free_directions(joint.kind)[direction.0];
+        if is_free || kind.elastic_law().is_none_or(|law| law.gives()[direction.0]) {
+            return;
+        }
+        let message = format!(
+            "`{name}` has no deflection `{}`: joint `{}` is rigid there",
+            direction.name(),
+            joint.name
+        );
+        let help = format!("name a direction with a stiffness, or add `{}` to `{name}`", direction.name());
+        self.fault("HP0250", here.key("direction"), message).help(help);
+    }
+
+    /// The elastic joint or bushing of that name.
+    fn elastic(&mut self, name: &str, at: DraftLocation) -> Option<ElasticId> {
+        let element = self.force(name, at.clone())?;
+        if self.model.elements[element.0].kind.elastic_law().is_some() {
+            return Some(ElasticId(element));
+        }
+        let message = format!("`{name}` has no deflections along and about axes");
+        self.fault("HP0250", at, message)
+            .help("name a force of `type = \"elastic_joint\"` or `\"bushing\"`; of a spring measure the `distance` of its ends");
+        None
     }
 
     /// HP0250: loads or compliances of a model without any. HP0251: reactions on a body that the joint does not
@@ -648,6 +681,8 @@ field!(Option<BodyId>, Body, Name: Option<String>, may |name, key, c| match name
     None => Some(None),
 });
 field!(ReactionPart, ReactionPart, Part: ReactionPart, |part, _key, _c| Some(*part));
+field!(ElasticId, Force, Name: String, |name, key, c| c.check.elastic(name, c.here.key(key)));
+field!(ElasticDirection, ElasticDirection, Elastic: ElasticDirection, |direction, _key, _c| Some(*direction));
 field!(ElementId, Force, Name: String, |name, key, c| c.check.force(name, c.here.key(key)));
 field!(Option<ElementId>, Force, Name: Option<String>, may |name, key, c| match name {
     Some(name) => ElementId::resolve(name, key, c).map(Some),

@@ -783,6 +783,7 @@ fn moved(draft: &Draft, to: Pose) -> Draft {
             | MeasureKindDraft::DriverPower { .. }
             | MeasureKindDraft::Reaction { .. }
             | MeasureKindDraft::SpringForce { .. }
+            | MeasureKindDraft::Deflection { .. }
             | MeasureKindDraft::KineticEnergy { .. }
             | MeasureKindDraft::ShakingForce { .. }
             | MeasureKindDraft::ShakingMoment { .. }
