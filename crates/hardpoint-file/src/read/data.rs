@@ -41,8 +41,8 @@ pub(super) struct Curve {
     abscissas: &'static str,
     /// Unit of the abscissa, after a number.
     unit: &'static str,
-    /// Dimensions of abscissa and value; `None` where the model decides.
-    dimensions: [Option<Dimension>; 2],
+    /// Dimensions that abscissa and value may have; empty where the model decides.
+    dimensions: [&'static [Dimension]; 2],
     /// Instruction if the file is empty.
     write: &'static str,
 }
@@ -60,7 +60,8 @@ pub(super) const TABLE: Curve = Curve {
     abscissa: "time",
     abscissas: "times",
     unit: " s",
-    dimensions: [None; 2],
+    // What a law prescribes, or the factor of a force.
+    dimensions: [&[], &[Dimension::LENGTH, Dimension::ANGLE, Dimension::NUMBER]],
     write: "write a time in s and a value on each line, like `0.5, 12.5`",
 };
 /// Target of a metric.
@@ -74,7 +75,7 @@ pub(super) const TARGET: Curve = Curve {
     abscissa: "abscissa",
     abscissas: "abscissas",
     unit: "",
-    dimensions: [None; 2],
+    dimensions: [&[]; 2],
     write: "write an abscissa and a value on each line, in the units of the model file, like `-20, 0.15`",
 };
 /// Force of a spring.
@@ -88,7 +89,7 @@ pub(super) const FORCE: Curve = Curve {
     abscissa: "way",
     abscissas: "ways",
     unit: "",
-    dimensions: [Some(Dimension::LENGTH), Some(Dimension::FORCE)],
+    dimensions: [&[Dimension::LENGTH], &[Dimension::FORCE]],
     write: "write a deflection in the model's length unit and a force in N on each line, like `12.5, 340`",
 };
 
@@ -96,7 +97,7 @@ pub(super) const FORCE: Curve = Curve {
 pub(super) const MOMENT: Curve = Curve {
     abscissa: "angle",
     abscissas: "angles",
-    dimensions: [Some(Dimension::ANGLE), Some(Dimension::MOMENT)],
+    dimensions: [&[Dimension::ANGLE], &[Dimension::MOMENT]],
     write: "write an angle in the model's angle unit and a moment in N m on each line, like `5, 34`",
     ..FORCE
 };
@@ -375,8 +376,9 @@ fn scales(
             let help = "give its values in the unit of the model file, or remove the unit of the column";
             return Err(DataError::content(message, help));
         };
-        if let Some(own) = of.dimensions[k].filter(|own| *own != unit.dimension) {
-            let own = symbol_of(units, own);
+        let known = of.dimensions[k];
+        if !known.is_empty() && !known.contains(&unit.dimension) {
+            let own = known.iter().map(|own| symbol_of(units, *own)).collect::<Vec<_>>().join(", ");
             return Err(DataError::content(
                 format!("{of_column}, and the model file has {own}"),
                 &format!("give the values in {own}, or choose other `columns`"),

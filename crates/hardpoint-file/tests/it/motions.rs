@@ -254,6 +254,14 @@ fn a_data_file_means_the_same_however_it_is_written() {
         let model = with_file(&law(rest), &[("travel.csv", text)]).unwrap_or_else(|e| panic!("{e}"));
         assert_eq!(model.drivers[2].law, expected, "{text}");
     }
+    for (title, words) in [
+        ("travel [kN]", "`travel` of `travel.csv` is in `kN`, and the model file has mm, deg, 1"),
+        ("travel [furlong]", "`travel` of `travel.csv` is in `furlong`, which is not a known unit"),
+    ] {
+        let text = format!("time [s], {title}\n0, 0\n1, 5\n3, 2\n");
+        let error = with_file(&law(""), &[("travel.csv", &text)]).unwrap_err().to_string();
+        assert!(error.contains("HP0112") && error.contains(words), "{error}");
+    }
     let below = law("").replace("travel.csv", "./data/travel.csv");
     let model = with_file(&below, &[("data/travel.csv", "0, 0\n1, 5\n3, 2\n")]).unwrap();
     assert_eq!(model.drivers[2].law, expected);
