@@ -34,8 +34,8 @@ pub struct Unit {
 impl Unit {
     const ONE: Self = Self { size: 1.0, dimension: Dimension::NUMBER };
 
-    /// The unit that a symbol denotes: factors after `*`, `·` or a blank, with exponents, and divisors after `/`, several
-    /// of them in brackets. A letter's case counts: `mN` is not `MN`.
+    /// The unit that a symbol denotes: factors after `*`, `·` or a blank, with exponents, and divisors after `/`, in
+    /// brackets if there are several. A letter's case counts: `mN` is not `MN`.
     pub fn of_symbol(symbol: &str) -> Option<Self> {
         let symbol = symbol.replace('²', "^2").replace('³', "^3");
         let mut unit = Self::ONE;

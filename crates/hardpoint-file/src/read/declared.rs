@@ -49,7 +49,7 @@ const MATRIX: Shape =
 pub(super) const FORCE_FILE: Table = table! {
     /// A force over deflection in a CSV file.
     "ForceFile":
-    /// A CSV file in the model's folder or below it: deflections in the length unit and forces in N, or in the units of its titles.
+    /// A CSV file in the model's folder or below it: deflections, in the length unit or a title's, and forces in N.
     must "file": Shape::File, "\"bump_stop.csv\"";
     /// The file's columns of deflection and force, by name or by number from 1. Default: the first two.
     may "columns": Shape::exactly(2, &COLUMN), "[1, 2]";
@@ -57,7 +57,7 @@ pub(super) const FORCE_FILE: Table = table! {
 pub(super) const MOMENT_FILE: Table = table! {
     /// A moment over an angle in a CSV file.
     "MomentFile":
-    /// A CSV file in the model's folder or below it: angles in the angle unit and moments in N m, or in the units of its titles.
+    /// A CSV file in the model's folder or below it: angles, in the angle unit or a title's, and moments in N m.
     must "file": Shape::File, "\"bush_about_z.csv\"";
     /// The file's columns of angle and moment, by name or by number from 1. Default: the first two.
     may "columns": Shape::exactly(2, &COLUMN), "[1, 2]";

@@ -293,8 +293,8 @@ macro_rules! measures {
         positive: "",
         words: format!("articulation of joint `{}`", model.joints[joint.0].name);
 
-    /// Deflection of an elastic joint or bushing in one direction: displacement of its second body relative to the first
-    /// along an axis of the joint or bushing, or rotation about it as the Cardan angle of its law.
+    /// Deflection of an elastic joint or bushing in one direction: displacement of its second body relative to the
+    /// first along an axis of the joint or bushing, or rotation about it as the Cardan angle of its law.
     Deflection "deflection" [Pose, NotDrivable, Polar, normal: false] {
         /// Name of the elastic joint or bushing.
         force: String => ElasticId,

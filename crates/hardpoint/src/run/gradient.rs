@@ -77,9 +77,9 @@ impl Analysis<'_> {
     /// The adjoint method costs one transposed solution for each output and time, with its first two time derivatives,
     /// and a few products for each marker that a variable moves (`docs/theory.md`, section 8).
     ///
-    /// Loads take one more solution. At an equilibrium, gradients use direct differentiation: the adjoint method would
-    /// need the same derivatives of the forces of all openings by every variable. Velocities, slopes over a driver, compliances and formulas over other measures
-    /// always use direct differentiation.
+    /// Loads take one more solution. Velocities, slopes over a driver, compliances and formulas over other measures
+    /// always use direct differentiation, and so does everything at an equilibrium: the adjoint method would need the
+    /// same derivatives of the forces of all openings by every variable.
     ///
     /// # Panics
     /// If an index is out of range.
