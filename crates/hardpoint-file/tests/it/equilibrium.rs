@@ -519,7 +519,7 @@ fn deflections_are_measures_with_the_values_and_derivatives_of_the_loads() {
                 near(solution.measured.value(0, m)[0], displacement, 1e-14, &name(*at));
                 for (v, d) in largest.d.iter().enumerate() {
                     let found = solution.measured.d(0, VariableId(v), m)[0];
-                    near(found, *d, 1e-9 * d.abs() + 1e-12, &format!("d {}", name(*at)));
+                    near(found, *d, 1e-8 * d.abs() + 1e-11, &format!("d {}", name(*at)));
                 }
             }
         }
@@ -534,7 +534,7 @@ fn deflections_that_do_not_exist_are_reported() {
     for (measure, change, words) in [
         ("force = \"spring\", direction = \"x\"", None, "`spring` has no deflections along and about axes"),
         ("force = \"lca_front_bush\", direction = \"y\"", Some(", y = 8000000.0"), "is rigid there"),
-        ("force = \"lca_front_bush\", direction = \"along\"", None, "`about_z`"),
+        ("force = \"lca_front_bush\", direction = \"along\"", None, "cannot be `along`"),
     ] {
         let measures = format!("[measures]\nown = {{ type = \"deflection\", {measure} }}\n");
         let mut text = text.replace("[measures]\n", &measures);
