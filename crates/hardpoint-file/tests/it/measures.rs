@@ -68,6 +68,9 @@ expression = "v*a"
 type = "bushing"
 from = { body = "FRAMES0", at = "POINTS2" }
 to = { body = "FRAMES1", at = "POINTS2" }
+x = 1
+y = 1
+z = 1
 about_z = 1
 
 [measures.turn]

@@ -342,7 +342,7 @@ fn swinging(drivers: &str, measures: &str, forces: &str) -> String {
          mass_c = {{ type = \"rigid\", centre = {{ body = \"c\", at = <80 440> }}, mass = 2, ixx = 0.02, iyy = 0.03, izz = 0.04 }}\n\
          [forces]\nspring = {{ type = \"spring\", from = {{ body = \"ground\", at = <0 200> }}, to = \"p\", stiffness = 20 }}\n\
          soft = {{ type = \"elastic_joint\", joint = \"hinge\", x = 1000, y = 3000, z = 2000 }}\n\
-         bush = {{ type = \"bushing\", from = {{ body = \"a\", at = <40 400> }}, to = {{ body = \"c\", at = <40 400> }}, x = 2 }}\n{forces}\n\
+         bush = {{ type = \"bushing\", from = {{ body = \"a\", at = <40 400> }}, to = {{ body = \"c\", at = <40 400> }}, x = 2, y = 3, z = 4 }}\n{forces}\n\
          [measures]\nbase = {{ type = \"position\", point = \"p\", along = <0.2 0.7> }}\n\
          far = {{ type = \"distance\", from = \"p\", to = {{ body = \"ground\", at = <0 200> }} }}\n\
          moment = {{ type = \"driver_force\", driver = \"swing\" }}\npush = {{ type = \"driver_force\", driver = \"way\" }}\n{measures}"

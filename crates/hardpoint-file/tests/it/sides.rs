@@ -770,7 +770,7 @@ pub(crate) fn measures(hold: Hold<'_>) {
                      [forces]\nleft_spring = {{ type = \"spring\", from = {{ body = \"ground\", at = [0, 200, 300] }}, to = \"left_p\", stiffness = 20 }}\n\
                      left_twist = {{ type = \"torsion_spring\", joint = \"left_tube\", coordinate = \"angle\", stiffness = 0.3, equilibrium = 4 }}\n\
                      left_soft = {{ type = \"elastic_joint\", joint = \"left_hinge\", x = 1000, y = 3000, z = 2000 }}\n\
-                     left_bush = {{ type = \"bushing\", from = {{ body = \"left_a\", at = [60, 420, 10] }}, to = {{ body = \"left_c\", at = [60, 420, 10] }}, x = 2 }}\n",
+                     left_bush = {{ type = \"bushing\", from = {{ body = \"left_a\", at = [60, 420, 10] }}, to = {{ body = \"left_c\", at = [60, 420, 10] }}, x = 2, y = 3, z = 4 }}\n",
                         kind.name
                     ),
                 );
