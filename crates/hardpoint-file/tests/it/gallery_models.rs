@@ -72,6 +72,7 @@ const GALLERY: &[Entry] = &[
     entry("stewart", 6, 0, &[], stewart_legs_follow_their_laws),
     entry("three_rrr", 3, 6, &[], three_rrr_inverse_kinematics_give_the_laws),
     entry("watt_six_bar", 1, 6, &[], watt_six_bar_is_two_four_bars),
+    entry("wheel_clearance", 2, 0, &[], wheel_clearance_has_its_rods_and_the_distances_of_its_shapes),
 ];
 
 /// Agreement of the motion with a formula in the same units: round-off, grown by the gain of the mechanism.
@@ -705,6 +706,28 @@ fn macpherson_strut_and_tie_rod_have_their_lengths(m: &Solved) {
         m.close("strut", strut, l0 + 0.04 * (TAU * 0.1 * t).sin(), EXACT);
         let ball = m.place(k, "lca", "ball_joint");
         m.close("ball", (ball - m.place(k, "knuckle", "ball_joint")).norm(), 0.0, EXACT);
+    }
+}
+
+/// The distance of the tie rod from the lip is the least over points of the rod.
+fn wheel_clearance_has_its_rods_and_the_distances_of_its_shapes(m: &Solved) {
+    m.rod("tie_rod", constant);
+    let knuckle = m.file.model.body("knuckle").unwrap();
+    let beside_lip = m.hardpoint("lip_centre") + Vec3::new(0.0, 1.0, 0.0);
+    for (k, t) in m.steps() {
+        let wheel = m.place(k, "knuckle", "wheel_centre");
+        m.close("travel", wheel.z - m.hardpoint("wheel_centre").z, 0.03 * (2.0 * TAU * t).sin(), EXACT);
+        let [inner, outer] = [("rack", "tie_rod_inner"), ("knuckle", "tie_rod_outer")]
+            .map(|(body, point)| m.place(k, body, point));
+        let centre = m.place(k, "knuckle", "lip_centre");
+        let n = m.carried(k, knuckle, beside_lip)[0] - centre;
+        let apart = |part: f64| {
+            let v = inner + (outer - inner) * part - centre;
+            n.dot(v).hypot(n.cross(v).norm() - 0.122)
+        };
+        // Between samples it is less by 0.1 mm at most: half a spacing, at a slope of less than one.
+        let least = (0..=2000).map(|part| apart(f64::from(part) / 2000.0)).fold(f64::INFINITY, f64::min);
+        m.close("rod_to_lip", m.value(k, "rod_to_lip"), least - 0.012, 1e-4);
     }
 }
 

@@ -25,6 +25,7 @@ mod includes;
 mod joint_limits;
 mod kinks;
 mod language;
+mod linkage_clearances;
 mod loads;
 mod maps;
 mod margins;
