@@ -10,7 +10,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use hardpoint::model::{OpenSurface, Solid};
-use hardpoint::space::{Vec3, open_edges};
+use hardpoint::space::{Vec3, open_edges, overlap_of_parts};
 
 use crate::values::{
     DataError, Field, Fields, Folder, NUMBER, Reader, Severity, Shape, Table, Wanted, bytes_of, closest,
@@ -297,12 +297,13 @@ pub(super) fn surface(
     let found = surface_in_file(r, &said.file.0);
     let Mesh { vertices, triangles, frame, file } = placed(r, &said, found)?;
     let open = open_edges(&triangles);
+    let metres = r.units.length.metres(1.0);
+    // Six decimals of the model's unit: corners of STL files have no more digits.
+    let place = |p: Vec3| {
+        let [x, y, z] = p.map(|x| (1e6 * x / metres).round() / 1e6).to_array();
+        format!("({x}, {y}, {z})")
+    };
     if let Some([a, b]) = open.first().map(|edge| edge.map(|k| vertices[k as usize])) {
-        // Six decimals of the model's unit: corners of STL files have no more digits.
-        let place = |p: Vec3| {
-            let [x, y, z] = p.map(|x| (1e6 * x / r.units.length.metres(1.0)).round() / 1e6).to_array();
-            format!("({x}, {y}, {z})")
-        };
         let edges = if open.len() == 1 { "1 edge".into() } else { format!("{} edges", open.len()) };
         let note = format!(
             "at {edges} of `{}` triangles have no neighbour with the same orientation; one runs from {} to {}",
@@ -317,6 +318,12 @@ pub(super) fn surface(
             "it has no inside: a shape within it is as far from it as from its nearest triangle".into(),
         );
         d.help = Some("if it should be a solid, export it again with all edges closed".into());
+    } else if let Some(at) = overlap_of_parts(&vertices, &triangles) {
+        let message = format!("closed parts of {} overlap or touch", shape.what);
+        let d = r.remark(Severity::Note, "HP0120", f.value.span(), message);
+        d.notes.push(format!("two parts of `{}` meet at {}", shown(&file), place(at)));
+        d.notes.push("faces of one part within another count as surface: depths there are too small".into());
+        d.help = Some("unite the parts in the program that exports them".into());
     }
     Some((vertices, triangles, frame == MeshFrame::Body))
 }

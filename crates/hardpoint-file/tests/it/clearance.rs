@@ -644,6 +644,40 @@ fn a_cube_with_a_triangle_twice_has_an_inside_and_one_with_a_hole_is_named() {
     assert!(note.as_ref().unwrap().starts_with("at 4 edges of `cube.obj`"), "{note:?}");
 }
 
+/// A bolt that is partly within a plate, both in one file, and beside it in another.
+#[test]
+fn closed_parts_of_a_mesh_that_overlap_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("parts.toml");
+    std::fs::write(folder.path().join("triangle.obj"), TRIANGLE).unwrap();
+    std::fs::write(&path, PIERCING).unwrap();
+    // A cube with corners at x from `from` to `to`, after the eight corners of the plate.
+    let bolt = |from: f64, to: f64| {
+        let corners = PLATE.lines().filter_map(|line| line.strip_prefix("v "));
+        let corners = corners.map(|line| {
+            let [x, y, z] = [0, 1, 2].map(|k| line.split(' ').nth(k).unwrap().parse::<f64>().unwrap());
+            format!("v {} {} {}\n", if x < 0.0 { from } else { to }, 0.1 * y, 0.1 * z)
+        });
+        let faces = PLATE.lines().filter_map(|line| line.strip_prefix("f "));
+        let shifted = |line: &str| {
+            let numbers: Vec<String> =
+                line.split(' ').map(|k| (k.parse::<u32>().unwrap() + 8).to_string()).collect();
+            format!("f {}\n", numbers.join(" "))
+        };
+        corners.chain(faces.map(shifted)).collect::<String>()
+    };
+    for (from, to, overlaps) in [(-1.0, 30.0, true), (3.0, 30.0, false)] {
+        std::fs::write(folder.path().join("plate.obj"), format!("{PLATE}{}", bolt(from, to))).unwrap();
+        let file = hardpoint_file::read(&path).unwrap_or_else(|e| panic!("{e}"));
+        let note = file.remarks.iter().find(|d| d.code == "HP0120");
+        assert_eq!(note.is_some(), overlaps, "{:?}", file.remarks);
+        if let Some(note) = note {
+            assert_eq!(note.message, "closed parts of shape `plate` overlap or touch");
+            assert!(note.notes[0].starts_with("two parts of `plate.obj` meet at ("), "{:?}", note.notes);
+        }
+    }
+}
+
 /// A rod that turns within a solid at rest.
 fn rod_in(solid: &str, [p, q]: [[f64; 3]; 2], steps: usize) -> String {
     format!(

@@ -4,7 +4,7 @@
 //! distance of a core is that of its deepest point.
 
 use crate::number;
-use crate::space::{Pose, Surface, TrianglePart, Vec3, nearest_of_triangle};
+use crate::space::{Pose, Surface, TrianglePart, Vec3, is_pierced, nearest_of_triangle};
 
 use super::circle::Circle;
 use super::core::Core;
@@ -394,18 +394,6 @@ fn segment_and_surface([a, b]: [Vec3; 2], view: View<'_>) -> Nearest {
     let near = view.nearest_to(a + (b - a) * t);
     let near = Nearest { features: [Feature::Point(t), near.features[1]], ..near };
     if t > 0.0 && t < 1.0 { near.tied_along(b - a) } else { near }
-}
-
-/// True if a segment goes through a triangle.
-fn is_pierced([p, q]: [Vec3; 2], [a, b, c]: [Vec3; 3]) -> bool {
-    let normal = (b - a).cross(c - a);
-    let (from, to) = (normal.dot(p - a), normal.dot(q - a));
-    if from * to > 0.0 || from == to {
-        return false;
-    }
-    let x = p + (q - p) * (from / (from - to));
-    let inside = |u: Vec3, v: Vec3| normal.dot((v - u).cross(x - u)) >= 0.0;
-    inside(a, b) && inside(b, c) && inside(c, a)
 }
 
 /// The nearest points of two surfaces; `place` moves points of the second into the frame of the first. Where they

@@ -181,6 +181,40 @@ impl Surface {
         self.is_closed && normal.is_some_and(|n| n.dot(p - nearest) < 0.0)
     }
 
+    /// A place at which two closed surfaces go through each other, or at which one is within the other.
+    fn meets(&self, other: &Self) -> Option<Vec3> {
+        let ([(p, r), (q, s)], mut found) = ([self.ball(), other.ball()], None);
+        if (q - p).norm() > r + s {
+            return None;
+        }
+        self.search_pairs(other, &|p| p, &mut |s, t| {
+            let pair = [self.corners(s), other.corners(t)];
+            for (edges, triangle) in [(pair[0], pair[1]), (pair[1], pair[0])] {
+                let through = (0..3).find(|k| is_pierced([edges[*k], edges[(k + 1) % 3]], triangle));
+                found = found.or(through.map(|k| edges[k]));
+            }
+            // Pairs whose balls are apart are left out.
+            0.0
+        });
+        let within =
+            |part: &Self, whole: &Self| part.vertices.first().copied().filter(|p| whole.contains(*p));
+        found.or_else(|| within(self, other)).or_else(|| within(other, self))
+    }
+
+    /// True if a point is inside.
+    fn contains(&self, p: Vec3) -> bool {
+        let mut best = (f64::INFINITY, false);
+        self.search(f64::INFINITY, &|q| (q - p).norm(), &mut |t| {
+            let (q, part) = nearest_of_triangle(p, self.corners(t), self.triangles[t]);
+            let apart = (q - p).norm();
+            if apart < best.0 {
+                best = (apart, self.is_inside(p, part, q));
+            }
+            apart
+        });
+        best.1
+    }
+
     fn add_normals(&mut self) {
         self.vertex_normals = vec![Vec3::ZERO; self.vertices.len()];
         for corners in &self.triangles {
@@ -196,6 +230,66 @@ impl Surface {
             }
         }
     }
+}
+
+/// A place at which closed parts of a surface overlap or touch; `None` if the inside of each is apart from those of the
+/// others, or is a hollow of one. Faces of a part within another one are no surface of both together.
+pub fn overlap_of_parts(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Option<Vec3> {
+    let sense = volume(vertices, triangles);
+    // A hollow has the opposite sense.
+    let solids =
+        parts(&distinct(triangles.to_vec())).into_iter().filter(|part| volume(vertices, part) * sense > 0.0);
+    let solids: Vec<Surface> = solids.map(|part| surface_of_part(vertices, &part)).collect();
+    let pairs = (0..solids.len()).flat_map(|k| (0..k).map(move |n| [n, k]));
+    pairs.map(|pair| pair.map(|k| &solids[k])).find_map(|[a, b]| a.meets(b))
+}
+
+/// Triangles that are connected by their edges.
+fn parts(triangles: &[[u32; 3]]) -> Vec<Vec<[u32; 3]>> {
+    let mut beside: BTreeMap<[u32; 2], Vec<usize>> = BTreeMap::new();
+    let edges = |[a, b, c]: [u32; 3]| [[a, b], [b, c], [c, a]].map(|[a, b]| [a.min(b), a.max(b)]);
+    for (k, triangle) in triangles.iter().enumerate() {
+        edges(*triangle).into_iter().for_each(|edge| beside.entry(edge).or_default().push(k));
+    }
+    let mut seen = vec![false; triangles.len()];
+    let mut found = Vec::new();
+    for first in 0..triangles.len() {
+        let (mut part, mut open) = (Vec::new(), vec![first]);
+        while let Some(k) = open.pop() {
+            if !std::mem::replace(&mut seen[k], true) {
+                part.push(triangles[k]);
+                open.extend(edges(triangles[k]).iter().flat_map(|edge| &beside[edge]).filter(|k| !seen[**k]));
+            }
+        }
+        found.extend((!part.is_empty()).then_some(part));
+    }
+    found
+}
+
+/// A part of a surface with its own vertices.
+fn surface_of_part(vertices: &[Vec3], part: &[[u32; 3]]) -> Surface {
+    let mut numbers: BTreeMap<u32, u32> = BTreeMap::new();
+    let mut own = Vec::new();
+    let mut number = |k: u32| {
+        *numbers.entry(k).or_insert_with(|| {
+            own.push(vertices[k as usize]);
+            own.len() as u32 - 1
+        })
+    };
+    let triangles = part.iter().map(|t| t.map(&mut number)).collect();
+    Surface::new(own, triangles)
+}
+
+/// True if a segment goes through a triangle.
+pub(crate) fn is_pierced([p, q]: [Vec3; 2], [a, b, c]: [Vec3; 3]) -> bool {
+    let normal = (b - a).cross(c - a);
+    let (from, to) = (normal.dot(p - a), normal.dot(q - a));
+    if from * to > 0.0 || from == to {
+        return false;
+    }
+    let x = p + (q - p) * (from / (from - to));
+    let inside = |u: Vec3, v: Vec3| normal.dot((v - u).cross(x - u)) >= 0.0;
+    inside(a, b) && inside(b, c) && inside(c, a)
 }
 
 /// Triangles without repetitions: programs export some twice.
@@ -314,6 +408,39 @@ mod tests {
         let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
         let triangles = quads.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
         Surface::new((0..8).map(at).collect(), triangles)
+    }
+
+    /// Several cubes in one surface: corner, size, and true for a hollow.
+    fn cubes(all: &[([f64; 3], f64, bool)]) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+        let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+        for &(corner, size, is_hollow) in all {
+            let (cube, first) = (cube(), vertices.len() as u32);
+            vertices.extend(cube.vertices.iter().map(|v| *v * (size * 0.5) + Vec3::from(corner)));
+            let turned = |[a, b, c]: [u32; 3]| if is_hollow { [a, c, b] } else { [a, b, c] };
+            triangles.extend(cube.triangles.iter().map(|t| turned(t.map(|k| k + first))));
+        }
+        (vertices, triangles)
+    }
+
+    #[test]
+    fn closed_parts_that_overlap_are_found_and_hollows_are_none() {
+        let block = ([0.0; 3], 10.0, false);
+        for (other, overlaps) in [
+            (([12.0, 0.0, 0.0], 3.0, false), false),
+            (([3.0, 3.0, 3.0], 2.0, true), false),
+            (([3.0, 3.0, 3.0], 2.0, false), true),
+            (([8.0, 4.0, 4.0], 3.0, false), true),
+            (([10.0, 4.0, 4.0], 3.0, false), true),
+            (([-3.0, 4.0, 9.0], 3.0001, false), true),
+        ] {
+            for order in [[block, other], [other, block]] {
+                let (vertices, mut triangles) = cubes(&order);
+                assert_eq!(overlap_of_parts(&vertices, &triangles).is_some(), overlaps, "{order:?}");
+                // The same in the opposite sense.
+                triangles.iter_mut().for_each(|t| t.swap(1, 2));
+                assert_eq!(overlap_of_parts(&vertices, &triangles).is_some(), overlaps, "{order:?}");
+            }
+        }
     }
 
     #[test]
