@@ -46,30 +46,68 @@ impl<T: Real> Bodies<T> for [Pose<T>] {
 }
 
 /// Bodies of a motion, with rates. Body-fixed data are constant over time, so that points need a fraction of the
-/// arithmetic of poses with rates.
-pub(crate) struct MovingBodies<'m>(pub States<'m>);
+/// arithmetic of poses with rates. Numbers of a body are gathered once for all of its points.
+pub(crate) struct MovingBodies {
+    /// Bodies that carry shapes.
+    carriers: Vec<usize>,
+    /// Per body.
+    at: Vec<BodyState>,
+}
 
-impl Bodies<Rates> for MovingBodies<'_> {
+impl MovingBodies {
+    /// Bodies of a model, at rest in its origin.
+    pub fn of(model: &Model) -> Self {
+        Self { carriers: carriers(model), at: vec![BodyState::GROUND; model.bodies.len()] }
+    }
+
+    /// Moves those that carry shapes.
+    pub fn set(&mut self, states: States<'_>) {
+        self.carriers.iter().for_each(|&b| self.at[b] = states.body(b));
+    }
+
+    /// State of a body that carries a shape.
+    pub fn state_of(&self, body: BodyId) -> &BodyState {
+        &self.at[body.0]
+    }
+}
+
+impl Bodies<Rates> for MovingBodies {
     fn point(&self, body: BodyId, s: Vec3<Rates>) -> Vec3<Rates> {
-        let state = self.0.body(body.0);
-        let [y, v, a] = rates_of(&state, state.rotation * s.value());
+        let state = &self.at[body.0];
+        let [y, v, a] = rates_of(state, state.rotation * s.value());
         Vec3::of_rates([state.r + y, state.v + v, state.a + a])
     }
 
     fn direction(&self, body: BodyId, e: Vec3<Rates>) -> Vec3<Rates> {
-        let state = self.0.body(body.0);
-        Vec3::of_rates(rates_of(&state, state.rotation * e.value()))
+        let state = &self.at[body.0];
+        Vec3::of_rates(rates_of(state, state.rotation * e.value()))
     }
 
-    // Inlined, so that of a state only the pose is gathered.
-    #[inline(always)]
     fn pose(&self, body: BodyId) -> Pose {
-        self.0.body(body.0).pose()
+        self.at[body.0].pose()
+    }
+
+    fn place(&self, body: BodyId, s: Vec3) -> Vec3 {
+        let state = &self.at[body.0];
+        state.r + state.rotation * s
+    }
+
+    fn heading(&self, body: BodyId, e: Vec3) -> Vec3 {
+        self.at[body.0].rotation * e
     }
 
     fn state(&self, body: BodyId) -> Option<BodyState> {
-        Some(self.0.body(body.0))
+        Some(self.at[body.0])
     }
+}
+
+/// Bodies of a model that carry shapes.
+fn carriers(model: &Model) -> Vec<usize> {
+    let bodies = model.shapes.iter().flat_map(|shape| shape.bodies(model));
+    let mut carriers: Vec<usize> = bodies.map(|b| b.0).collect();
+    carriers.sort_unstable();
+    carriers.dedup();
+    carriers
 }
 
 /// The same with the derivatives by one design variable. Numbers of a body are gathered once for all of its points.
@@ -83,11 +121,10 @@ pub(crate) struct ChangingBodies {
 impl ChangingBodies {
     /// Bodies of a model, at rest in its origin.
     pub fn of(model: &Model) -> Self {
-        let bodies = model.shapes.iter().flat_map(|shape| shape.bodies(model));
-        let mut carriers: Vec<usize> = bodies.map(|b| b.0).collect();
-        carriers.sort_unstable();
-        carriers.dedup();
-        Self { carriers, at: vec![(BodyState::GROUND, BodySensitivity::ZERO); model.bodies.len()] }
+        Self {
+            carriers: carriers(model),
+            at: vec![(BodyState::GROUND, BodySensitivity::ZERO); model.bodies.len()],
+        }
     }
 
     /// Moves those that carry shapes.

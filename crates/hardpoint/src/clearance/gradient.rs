@@ -19,11 +19,13 @@
 //!
 //! so that a distance takes 36 products per body and variable.
 
+use hardpoint_tape::{LANES, Lanes};
+
 use crate::design::BodyFixed;
-use crate::model::{BodyId, Model, PointId, ShapeId, ShapeKind};
-use crate::motion::{BodyState, States};
+use crate::model::{BodyId, GROUND, Model, PointId, ShapeId, ShapeKind, VariableId};
+use crate::motion::{BodyState, Motion};
 use crate::number::{self, Dual, Rates};
-use crate::sensitivity::{BodySensitivity, Derivatives};
+use crate::sensitivity::{BodySensitivity, Sensitivities};
 use crate::space::{Real, Vec3};
 
 use super::bodies::{MovingBodies, rates_of};
@@ -33,58 +35,53 @@ use super::placed::PlacedShapes;
 
 /// Derivatives of the distance of two shapes at one time, by the poses of their bodies and by their points.
 pub(crate) struct DistanceGradient {
-    /// The shapes.
-    pub shapes: [ShapeId; 2],
-    /// One per shape, or those of both ends of a capsule.
-    loads: [Option<EndLoad>; 4],
+    shapes: [ShapeId; 2],
+    /// Of bodies that move: one per shape, or one per end of a capsule between two bodies.
+    bodies: [Option<BodyLoad>; 4],
+    /// Of points that move all of a shape, and of the ends of capsules.
+    points: [Option<PointLoad>; 4],
 }
 
-/// Force at a point of a body.
-struct EndLoad {
+/// Factors of the sensitivity of a body in the distance, its rate and its acceleration.
+struct BodyLoad {
     body: BodyId,
-    /// The point that moves all of the shape, or the end of the capsule, if there is one.
-    point: Option<PointId>,
-    /// The force with its rates.
-    force: [Vec3; 3],
-    /// Factors of pi' in the distance, its rate and its acceleration.
-    turn: [Vec3; 3],
-    /// Factor of omega' in the acceleration.
-    spin: Vec3,
+    factors: [f64; FACTORS],
 }
 
-impl EndLoad {
-    /// Load of a force at a point of space, which acts on the point of the body that is there at each time.
-    fn of(
-        (body, state): (BodyId, &BodyState),
-        point: Option<PointId>,
-        at: Vec3<Rates>,
-        force: Vec3<Rates>,
-    ) -> Self {
+/// Number of factors of a body: `F, F., F.., 2 F.`, those of pi' in the distance, its rate and its acceleration, and
+/// that of omega' in the acceleration.
+const FACTORS: usize = 24;
+
+/// Force at a point of a body, with its rates.
+struct PointLoad {
+    point: PointId,
+    body: BodyId,
+    force: [Vec3; 3],
+}
+
+impl BodyLoad {
+    /// Load of a force at a point of space, which acts on the point of the body that is there at each time; none of
+    /// ground.
+    fn of(body: BodyId, state: &BodyState, at: Vec3<Rates>, force: Vec3<Rates>) -> Option<Self> {
+        if body == GROUND {
+            return None;
+        }
         let origin = Vec3::of_rates([state.r, state.v, state.a]);
         let [m, md, mdd] = rates((at - origin).cross(force));
         let BodyState { omega, alpha, .. } = *state;
         let turned = m.cross(omega);
-        let turn = [m, md + turned, mdd + md.cross(omega) * 2.0 + m.cross(alpha) + turned.cross(omega)];
-        Self { body, point, force: rates(force), turn, spin: md * 2.0 + turned }
+        let [f, fd, fdd] = rates(force);
+        let acceleration = mdd + md.cross(omega) * 2.0 + m.cross(alpha) + turned.cross(omega);
+        let vectors = [f, fd, fdd, fd * 2.0, m, md + turned, acceleration, md * 2.0 + turned];
+        let mut factors = [0.0; FACTORS];
+        factors.chunks_exact_mut(3).zip(vectors).for_each(|(to, v)| to.copy_from_slice(&v.to_array()));
+        Some(Self { body, factors })
     }
+}
 
-    /// Distance, rate and acceleration by a variable with these derivatives of the body.
-    fn by_body(&self, d: &BodySensitivity) -> [f64; 3] {
-        let ([f, fd, fdd], [t, td, tdd]) = (self.force, self.turn);
-        [
-            f.dot(d.dr) + t.dot(d.dpi),
-            fd.dot(d.dr) + f.dot(d.dv) + td.dot(d.dpi) + t.dot(d.domega),
-            fdd.dot(d.dr)
-                + fd.dot(d.dv) * 2.0
-                + f.dot(d.da)
-                + tdd.dot(d.dpi)
-                + self.spin.dot(d.domega)
-                + t.dot(d.dalpha),
-        ]
-    }
-
-    /// The same by a change of the point within the body, in its frame.
-    fn by_point(&self, state: &BodyState, change: Vec3) -> [f64; 3] {
+impl PointLoad {
+    /// Distance, rate and acceleration by a change of the point within its body, in the frame of the body.
+    fn by(&self, state: &BodyState, change: Vec3) -> [f64; 3] {
         let [f, fd, fdd] = self.force;
         let [y, v, a] = rates_of(state, state.rotation * change);
         [f.dot(y), fd.dot(y) + f.dot(v), fdd.dot(y) + fd.dot(v) * 2.0 + f.dot(a)]
@@ -100,7 +97,7 @@ impl DistanceGradient {
     /// Gradient of the distance between the nearest features; `None` where they have no direction, or the ends of a
     /// cylinder are on two bodies.
     pub fn of(
-        placed: &PlacedShapes<'_, Rates, MovingBodies<'_>>,
+        placed: &PlacedShapes<'_, Rates, MovingBodies>,
         shapes: [ShapeId; 2],
         near: &Nearest,
     ) -> Option<Self> {
@@ -108,82 +105,164 @@ impl DistanceGradient {
             return None;
         }
         let features = placed.features(shapes, near);
-        let (points, n) =
-            nearest_points(number::both(features.each_ref(), |(placed, _)| placed), near.points)?;
+        let (at, n) = nearest_points(number::both(features.each_ref(), |(placed, _)| placed), near.points)?;
         let n = n * Rates::constant(near.sign);
         if near.sign == 0.0 || !rates(n)[0].is_finite() {
             return None;
         }
-        let mut loads = [None, None, None, None];
+        let mut gradient =
+            Self { shapes, bodies: [None, None, None, None], points: [None, None, None, None] };
         for (k, force) in [-n, n].into_iter().enumerate() {
-            let [first, second] = loads_of(placed, shapes[k], points[k], force)?;
-            (loads[2 * k], loads[2 * k + 1]) = (first, second);
+            gradient.add(k, placed, at[k], force)?;
         }
-        Some(Self { shapes, loads })
+        Some(gradient)
     }
 
-    /// Derivatives of distance, rate and acceleration by a variable. `fixed` has the derivatives of body-fixed data,
-    /// which must move the shapes by their points only ([`moves_points_only`]).
-    pub fn by(&self, states: States<'_>, d: Derivatives<'_>, fixed: &BodyFixed<Dual<Rates>>) -> [f64; 3] {
-        let [a, b] = number::both(self.shapes, |s| fixed.shapes[s.0].round.d.0[0]);
-        let mut sum = [-(a + b), 0.0, 0.0];
-        for load in self.loads.iter().flatten() {
-            let by = load.by_body(&d.body(load.body.0));
-            (0..3).for_each(|n| sum[n] += by[n]);
-            let change = load.point.map(|p| fixed.points[p.0].map(|x| x.d.0[0]));
-            if let Some(change) = change.filter(|change| *change != Vec3::ZERO) {
-                let by = load.by_point(&states.body(load.body.0), change);
-                (0..3).for_each(|n| sum[n] += by[n]);
+    /// Adds the loads of shape k with a force at its nearest point; `None` if its derivatives are not those of loads.
+    fn add(
+        &mut self,
+        k: usize,
+        placed: &PlacedShapes<'_, Rates, MovingBodies>,
+        at: Vec3<Rates>,
+        force: Vec3<Rates>,
+    ) -> Option<()> {
+        let model = placed.model;
+        let body_of = |p: PointId| model.points[p.0].body;
+        let load = |body: BodyId, at, force| BodyLoad::of(body, placed.bodies.state_of(body), at, force);
+        let (body, point) = match &model.shapes[self.shapes[k].0].kind {
+            ShapeKind::Capsule { ends } => {
+                let [a, b] = number::both(*ends, |p| placed.point(p));
+                let along = b - a;
+                let part = along.dot(at - a) / along.dot(along);
+                let carriers = number::both(*ends, body_of);
+                // Each end has the part of the force that the lever leaves to it.
+                for (end, part) in [Rates::one() - part, part].into_iter().enumerate() {
+                    let (n, own) = (2 * k + end, force * part);
+                    self.points[n] =
+                        Some(PointLoad { point: ends[end], body: carriers[end], force: rates(own) });
+                    if carriers[0] != carriers[1] {
+                        self.bodies[n] = load(carriers[end], [a, b][end], own);
+                    }
+                }
+                if carriers[0] == carriers[1] {
+                    self.bodies[2 * k] = load(carriers[0], at, force);
+                }
+                return Some(());
+            }
+            ShapeKind::Sphere { centre: point }
+            | ShapeKind::Ring { centre: point, .. }
+            | ShapeKind::Plane { point, .. } => (body_of(*point), Some(*point)),
+            ShapeKind::Tyre { wheel, .. } => {
+                let wheel = &model.wheels[wheel.0];
+                (wheel.body, Some(wheel.centre))
+            }
+            ShapeKind::Cylinder { ends: [a, b], .. } if body_of(*a) == body_of(*b) => (body_of(*a), None),
+            ShapeKind::Cylinder { .. } => return None,
+            ShapeKind::Hull { points, .. } => (body_of(points[0]), None),
+            ShapeKind::Mesh { body, .. } => (*body, None),
+        };
+        self.bodies[2 * k] = load(body, at, force);
+        self.points[2 * k] = point.map(|point| PointLoad { point, body, force: rates(force) });
+        Some(())
+    }
+}
+
+/// Gradients at eight output times, in lanes. Those of one time may belong to other shapes than those of the next.
+pub(crate) struct GradientBatch {
+    first: usize,
+    at: Vec<Option<DistanceGradient>>,
+    /// Per body: zero at times at which it has no load.
+    bodies: Vec<(BodyId, [Lanes; FACTORS])>,
+    /// Points that move some shape.
+    points: Vec<PointId>,
+}
+
+impl GradientBatch {
+    /// Gradients at up to eight output times, of which this is the first.
+    pub fn of(first: usize, at: Vec<Option<DistanceGradient>>) -> Self {
+        let mut bodies: Vec<(BodyId, [Lanes; FACTORS])> = Vec::new();
+        for (lane, gradient) in at.iter().enumerate() {
+            for load in gradient.iter().flat_map(|gradient| gradient.bodies.iter().flatten()) {
+                let known = bodies.iter().position(|(body, _)| *body == load.body).unwrap_or_else(|| {
+                    bodies.push((load.body, [[0.0; LANES]; FACTORS]));
+                    bodies.len() - 1
+                });
+                let factors = bodies[known].1.iter_mut().zip(load.factors);
+                factors.for_each(|(to, factor)| to[lane] += factor);
+            }
+        }
+        let loads = at.iter().flatten().flat_map(|gradient| gradient.points.iter().flatten());
+        let mut points: Vec<PointId> = loads.map(|load| load.point).collect();
+        points.sort_unstable();
+        points.dedup();
+        Self { first, at, bodies, points }
+    }
+
+    /// The shapes whose distance has a gradient at output time k.
+    pub fn shapes(&self, k: usize) -> Option<[ShapeId; 2]> {
+        self.at.get(k - self.first)?.as_ref().map(|gradient| gradient.shapes)
+    }
+
+    /// Derivatives of distance, rate and acceleration by a variable, at times at which there is a gradient. `fixed` has
+    /// the derivatives of body-fixed data, which must move the shapes by their points only ([`moves_points_only`]).
+    pub fn by(
+        &self,
+        variable: VariableId,
+        (motion, sensitivities): (&Motion, &Sensitivities),
+        fixed: &BodyFixed<Dual>,
+    ) -> [Lanes; 3] {
+        let mut sum = [[0.0; LANES]; 3];
+        let mut d = [[0.0; LANES]; BodySensitivity::NUMBERS];
+        for (body, factors) in self.bodies.iter().filter(|(body, _)| sensitivities.moves(variable, *body)) {
+            sensitivities.gather(self.first, variable.0, body.0, &mut d);
+            add_products(&mut sum, factors, &d);
+        }
+        let change = |p: PointId| fixed.points[p.0].map(|x| x.d);
+        let are_still = self.points.iter().all(|p| change(*p) == Vec3::ZERO);
+        for (lane, gradient) in self.at.iter().enumerate() {
+            let Some(DistanceGradient { shapes, points, .. }) = gradient else { continue };
+            let [a, b] = number::both(*shapes, |s| fixed.shapes[s.0].round.d);
+            sum[0][lane] -= a + b;
+            for load in points.iter().flatten().filter(|_| !are_still) {
+                let change = change(load.point);
+                if change != Vec3::ZERO {
+                    let by = load.by(&motion.at(self.first + lane).body(load.body.0), change);
+                    (0..3).for_each(|n| sum[n][lane] += by[n]);
+                }
             }
         }
         sum
     }
 }
 
-/// Loads of a shape with a force at its nearest point.
-fn loads_of(
-    placed: &PlacedShapes<'_, Rates, MovingBodies<'_>>,
-    shape: ShapeId,
-    at: Vec3<Rates>,
-    force: Vec3<Rates>,
-) -> Option<[Option<EndLoad>; 2]> {
-    let model = placed.model;
-    let body_of = |p: PointId| model.points[p.0].body;
-    let state = |body: BodyId| placed.bodies.0.body(body.0);
-    let one = |body: BodyId, point| Some([Some(EndLoad::of((body, &state(body)), point, at, force)), None]);
-    match &model.shapes[shape.0].kind {
-        ShapeKind::Capsule { ends } => {
-            let [a, b] = number::both(*ends, |p| placed.point(p));
-            let along = b - a;
-            let part = along.dot(at - a) / along.dot(along);
-            // Each end has the part of the force that the lever leaves to it.
-            let parts = [Rates::one() - part, part];
-            let load = |k: usize| {
-                let body = body_of(ends[k]);
-                (parts[k].0 != [0.0; 3])
-                    .then(|| EndLoad::of((body, &state(body)), Some(ends[k]), [a, b][k], force * parts[k]))
-            };
-            Some([load(0), load(1)])
+/// Adds the products of the factors of a body with its sensitivity.
+fn add_products(sum: &mut [Lanes; 3], factors: &[Lanes; FACTORS], d: &[Lanes; BodySensitivity::NUMBERS]) {
+    let vector = |k: usize| &factors[3 * k..3 * k + 3];
+    let [f, fd, fdd, twice_fd, t, td, tdd, spin] = number::each(&[0, 1, 2, 3, 4, 5, 6, 7], vector);
+    let change = |k: usize| &d[3 * k..3 * k + 3];
+    let [dr, dpi, dv, domega, da, dalpha] = number::each(&[0, 1, 2, 3, 4, 5], change);
+    add(&mut sum[0], [(f, dr), (t, dpi)]);
+    add(&mut sum[1], [(fd, dr), (f, dv), (td, dpi), (t, domega)]);
+    add(&mut sum[2], [(fdd, dr), (twice_fd, dv), (f, da), (tdd, dpi), (spin, domega), (t, dalpha)]);
+}
+
+/// Adds scalar products, lane by lane.
+#[inline(always)]
+fn add<const N: usize>(sum: &mut Lanes, products: [(&[Lanes], &[Lanes]); N]) {
+    let mut total = *sum;
+    for (a, b) in products.into_iter().flat_map(|(a, b)| a.iter().zip(b)) {
+        for lane in 0..LANES {
+            total[lane] += a[lane] * b[lane];
         }
-        ShapeKind::Sphere { centre: point }
-        | ShapeKind::Ring { centre: point, .. }
-        | ShapeKind::Plane { point, .. } => one(body_of(*point), Some(*point)),
-        ShapeKind::Tyre { wheel, .. } => {
-            let wheel = &model.wheels[wheel.0];
-            one(wheel.body, Some(wheel.centre))
-        }
-        ShapeKind::Cylinder { ends: [a, b], .. } if body_of(*a) == body_of(*b) => one(body_of(*a), None),
-        ShapeKind::Cylinder { .. } => None,
-        ShapeKind::Hull { points, .. } => one(body_of(points[0]), None),
-        ShapeKind::Mesh { body, .. } => one(*body, None),
     }
+    *sum = total;
 }
 
 /// True if a variable changes a shape by points that move all of it, or the ends of a capsule, and by the radius around
 /// its core: the force along its nearest points gives the derivative.
-pub(crate) fn moves_points_only(model: &Model, fixed: &BodyFixed<Dual<Rates>>, shape: ShapeId) -> bool {
-    let is_constant = |x: Dual<Rates>| x.d.0[0] == 0.0;
-    let is_still = |v: Vec3<Dual<Rates>>| [v.x, v.y, v.z].into_iter().all(is_constant);
+pub(crate) fn moves_points_only(model: &Model, fixed: &BodyFixed<Dual>, shape: ShapeId) -> bool {
+    let is_constant = |x: Dual| x.d == 0.0;
+    let is_still = |v: Vec3<Dual>| [v.x, v.y, v.z].into_iter().all(is_constant);
     let points_still = |points: &[PointId]| points.iter().all(|p| is_still(fixed.points[p.0]));
     let geometry = &fixed.shapes[shape.0];
     let size_still = geometry.axis.is_none_or(is_still) && is_constant(geometry.size);

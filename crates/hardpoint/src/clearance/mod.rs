@@ -22,7 +22,7 @@ mod swept;
 mod tests;
 
 pub(crate) use bodies::{ChangingBodies, MovingBodies};
-pub(crate) use gradient::{DistanceGradient, moves_points_only};
+pub(crate) use gradient::{DistanceGradient, GradientBatch, moves_points_only};
 pub(crate) use placed::{NearestPair, PlacedShapes};
 pub(crate) use separation::{Direction, EnclosedSolid, lower_bound, separations};
 pub(crate) use swept::ShapeAtPose;

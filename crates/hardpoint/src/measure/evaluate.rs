@@ -5,7 +5,8 @@ use std::ops::Range;
 use hardpoint_tape::LANES;
 
 use crate::clearance::{
-    ChangingBodies, DistanceGradient, MovingBodies, NearestPair, PlacedShapes, moves_points_only,
+    ChangingBodies, DistanceGradient, GradientBatch, MovingBodies, NearestPair, PlacedShapes,
+    moves_points_only,
 };
 use crate::design::{BodyFixed, DesignMap};
 use crate::law::Law;
@@ -112,6 +113,8 @@ struct FormulaEvaluator<'a> {
     counted: Vec<f64>,
     /// By time and clearance: the nearest pair, where formulas are evaluated.
     nearest: Vec<NearestPair>,
+    /// Bodies that carry shapes, at one output time.
+    carriers: MovingBodies,
     /// Room for the slopes and the whole turns of one output time.
     given: Vec<Rates>,
     whole_turns: Vec<Rates>,
@@ -140,6 +143,7 @@ impl<'a> FormulaEvaluator<'a> {
             left: Vec::new(),
             counted: Vec::new(),
             nearest: Vec::new(),
+            carriers: MovingBodies::of(model),
             given: Vec::new(),
             whole_turns: Vec::new(),
         }
@@ -169,7 +173,8 @@ impl<'a> FormulaEvaluator<'a> {
 
     /// The same at output time k, for the outputs that are left from `begins` on.
     fn fill_one(&mut self, k: usize, begins: usize, measured: &mut MeasureResults) {
-        let Self { model, motion, fixed, bodies, poses, left, given, whole_turns, nearest, .. } = self;
+        let Self { model, motion, fixed, bodies, poses, left, given, whole_turns, nearest, carriers, .. } =
+            self;
         let left = &left[begins..];
         let place = |poses: &mut [Pose<Rates>]| {
             let states = motion.at(k);
@@ -184,7 +189,10 @@ impl<'a> FormulaEvaluator<'a> {
         }
         // The features of a clearance are selected once, and serve its derivatives too.
         let begins = nearest.len();
-        let shapes = PlacedShapes { model, fixed, bodies: &MovingBodies(motion.at(k)) };
+        if !model.clearances.is_empty() {
+            carriers.set(motion.at(k));
+        }
+        let shapes = PlacedShapes { model, fixed, bodies: carriers };
         if left.is_empty() {
             nearest.resize(begins + model.clearances.len(), None);
         } else {
@@ -263,15 +271,13 @@ pub(crate) fn derivatives(
             },
         );
     }
+    let run = (motion, sensitivities);
+    let mut gradients = ClearanceGradients::of(design, outputs, listed, run, more.nearest);
+    let listed = &gradients.write(design, outputs, listed, run, &mut out)[..];
     // Clearances need the points of shapes only, not all poses.
     let needs_poses = listed.iter().any(|(_, m)| clearance_of(model, outputs[*m].source).is_none());
     let bodies = if needs_poses { bodies_asked_for(model) } else { Vec::new() };
-    let gradients =
-        distance_gradients(design, outputs, listed, (motion, sensitivities.variables), more.nearest);
     let mut carriers = ChangingBodies::of(model);
-    // Per shape: true if the variable moves it by its points only.
-    let (mut of_variable, mut by_points) = (None, Vec::new());
-    let run = (motion, sensitivities);
     each_step(
         design,
         listed,
@@ -280,12 +286,6 @@ pub(crate) fn derivatives(
         more,
         |instant: Option<&Instant<'_, Dual<Rates>>>, fixed, k, b, listed| {
             let Some(instant) = instant else { return };
-            if of_variable != Some(b) {
-                of_variable = Some(b);
-                by_points.clear();
-                by_points
-                    .extend((0..model.shapes.len()).map(|s| moves_points_only(model, fixed, ShapeId(s))));
-            }
             let states = motion.at(k);
             let mut placed = false;
             for &(_, m) in listed {
@@ -293,13 +293,10 @@ pub(crate) fn derivatives(
                     out(k, b, m, instant.output(outputs[m].source).derivatives());
                     continue;
                 };
-                let Some(d) = sensitivities.at(k, b) else { continue };
-                let gradient = gradients.get(k * model.clearances.len() + of.0).and_then(Option::as_ref);
-                let gradient = gradient.filter(|g| g.shapes.iter().all(|s| by_points[s.0]));
-                if let Some(gradient) = gradient {
-                    out(k, b, m, gradient.by(states, d, fixed));
+                if gradients.serves(of, k, b) {
                     continue;
                 }
+                let Some(d) = sensitivities.at(k, b) else { continue };
                 if !placed {
                     carriers.set(states, d);
                     placed = true;
@@ -311,36 +308,106 @@ pub(crate) fn derivatives(
     );
 }
 
-/// Derivatives of the distance of the nearest pair by poses, by time and clearance, at the listed times; empty if no
-/// clearance is listed, or nothing is differentiated by.
-fn distance_gradients(
-    design: &MeasuredDesign<'_>,
-    outputs: &[Output],
-    listed: &[(usize, usize)],
-    (motion, variables): (&Motion, usize),
-    nearest: &[NearestPair],
-) -> Vec<Option<DistanceGradient>> {
-    let model = design.model;
-    let count = model.clearances.len();
-    let asked = |m: usize| clearance_of(model, outputs[m].source);
-    let mut found = Vec::new();
-    if variables == 0 || !listed.iter().any(|(_, m)| asked(*m).is_some()) {
-        return found;
-    }
-    found.resize_with(motion.len() * count, || None);
-    let fixed = design.design_map.fixed(design.values).map(Jet::constant);
-    for &(first, m) in listed {
-        let Some(of) = asked(m) else { continue };
-        for k in first..usize::min(first + LANES, motion.len()) {
-            let shapes = PlacedShapes { model, fixed: &fixed, bodies: &MovingBodies(motion.at(k)) };
-            let known = nearest.get(k * count + of.0).copied();
-            let pair = known.unwrap_or_else(|| shapes.nearest_pair(of));
-            found[k * count + of.0] = pair.and_then(|(n, near)| {
-                DistanceGradient::of(&shapes, model.clearances[of.0].pairs[n].shapes, &near)
-            });
+/// ClearanceGradients of the distances of clearances at the listed times, and the variables that they serve.
+struct ClearanceGradients {
+    /// By block of eight output times and clearance; empty if no clearance is listed, or nothing is differentiated by.
+    batches: Vec<Option<GradientBatch>>,
+    /// Number of clearances.
+    clearances: usize,
+    /// By variable and shape: true if the variable moves the shape by its points only.
+    by_points: Vec<Vec<bool>>,
+}
+
+impl ClearanceGradients {
+    fn of(
+        design: &MeasuredDesign<'_>,
+        outputs: &[Output],
+        listed: &[(usize, usize)],
+        (motion, sensitivities): (&Motion, &Sensitivities),
+        nearest: &[NearestPair],
+    ) -> Self {
+        let model = design.model;
+        let clearances = model.clearances.len();
+        let mut found = Self { batches: Vec::new(), clearances, by_points: Vec::new() };
+        let asked = |m: usize| clearance_of(model, outputs[m].source);
+        if sensitivities.variables == 0 || !listed.iter().any(|(_, m)| asked(*m).is_some()) {
+            return found;
         }
+        found.batches.resize_with(motion.len().div_ceil(LANES) * clearances, || None);
+        let fixed = design.design_map.fixed(design.values).map(Jet::constant);
+        let mut bodies = MovingBodies::of(model);
+        for listed in listed.chunk_by(|a, b| a.0 == b.0) {
+            let first = listed[0].0;
+            let asked: Vec<ClearanceId> = listed.iter().filter_map(|(_, m)| asked(*m)).collect();
+            let mut at: Vec<Vec<Option<DistanceGradient>>> = asked.iter().map(|_| Vec::new()).collect();
+            for k in first..usize::min(first + LANES, motion.len()) {
+                bodies.set(motion.at(k));
+                let shapes = PlacedShapes { model, fixed: &fixed, bodies: &bodies };
+                for (of, at) in asked.iter().zip(&mut at) {
+                    let known = nearest.get(k * clearances + of.0).copied();
+                    let pair = known.unwrap_or_else(|| shapes.nearest_pair(*of));
+                    at.push(pair.and_then(|(n, near)| {
+                        DistanceGradient::of(&shapes, model.clearances[of.0].pairs[n].shapes, &near)
+                    }));
+                }
+            }
+            for (of, at) in asked.iter().zip(at) {
+                found.batches[first / LANES * clearances + of.0] = Some(GradientBatch::of(first, at));
+            }
+        }
+        found
     }
-    found
+
+    fn batch(&self, of: ClearanceId, k: usize) -> Option<&GradientBatch> {
+        self.batches.get(k / LANES * self.clearances + of.0)?.as_ref()
+    }
+
+    /// True if the derivative of a clearance by a variable at output time k is that of the gradient.
+    fn serves(&self, of: ClearanceId, k: usize, b: usize) -> bool {
+        let shapes = self.batch(of, k).and_then(|batch| batch.shapes(k));
+        shapes.is_some_and(|shapes| shapes.iter().all(|s| self.by_points[b][s.0]))
+    }
+
+    /// Writes the derivatives that gradients serve; returns what is listed and has others.
+    fn write(
+        &mut self,
+        design: &MeasuredDesign<'_>,
+        outputs: &[Output],
+        listed: &[(usize, usize)],
+        run: (&Motion, &Sensitivities),
+        out: &mut impl FnMut(usize, usize, usize, [f64; 3]),
+    ) -> Vec<(usize, usize)> {
+        if self.batches.is_empty() {
+            return listed.to_vec();
+        }
+        let &MeasuredDesign { model, design_map, values, .. } = design;
+        let of = |m: usize| clearance_of(model, outputs[m].source);
+        let mut has_others: Vec<bool> = listed.iter().map(|(_, m)| of(*m).is_none()).collect();
+        let mut values: Vec<Dual> = values.iter().map(|v| Dual::constant(*v)).collect();
+        let (motion, sensitivities) = run;
+        for b in 0..sensitivities.variables {
+            values[b] = Dual::variable(values[b].v);
+            let fixed = design_map.fixed(&values);
+            values[b] = Dual::constant(values[b].v);
+            let by_points = (0..model.shapes.len()).map(|s| moves_points_only(model, &fixed, ShapeId(s)));
+            self.by_points.push(by_points.collect());
+            for (&(first, m), has_others) in listed.iter().zip(&mut has_others) {
+                let served = of(m).and_then(|of| Some((of, self.batch(of, first)?)));
+                let Some((of, batch)) = served.filter(|_| sensitivities.at(first, b).is_some()) else {
+                    continue;
+                };
+                let [value, rate, acceleration] = batch.by(VariableId(b), run, &fixed);
+                for (lane, k) in (first..usize::min(first + LANES, motion.len())).enumerate() {
+                    if self.serves(of, k, b) {
+                        out(k, b, m, [value[lane], rate[lane], acceleration[lane]]);
+                    } else {
+                        *has_others = true;
+                    }
+                }
+            }
+        }
+        listed.iter().zip(has_others).filter(|(_, others)| *others).map(|(listed, _)| *listed).collect()
+    }
 }
 
 /// Number that has the derivatives of an output by a variable.

@@ -564,10 +564,11 @@ impl<'m> PosedMotion<'m> {
     fn each(
         &self,
         steps: impl Iterator<Item = usize>,
-        mut visit: impl FnMut(usize, PlacedShapes<'_, Rates, MovingBodies<'_>>),
+        mut visit: impl FnMut(usize, PlacedShapes<'_, Rates, MovingBodies>),
     ) {
+        let mut bodies = MovingBodies::of(self.model);
         for k in steps {
-            let bodies = MovingBodies(self.motion.at(k));
+            bodies.set(self.motion.at(k));
             visit(k, PlacedShapes { model: self.model, fixed: &self.fixed, bodies: &bodies });
         }
     }
@@ -609,7 +610,9 @@ impl<'m> PosedMotion<'m> {
             let bodies = model.shapes[s.0].bodies(model);
             bodies.into_iter().map(|body| motion.at(k).body(body.0)).collect::<Vec<BodyState>>()
         };
-        let placed = PlacedShapes { model, fixed, bodies: &MovingBodies(motion.at(k)) };
+        let mut bodies = MovingBodies::of(model);
+        bodies.set(motion.at(k));
+        let placed = PlacedShapes { model, fixed, bodies: &bodies };
         let balls = shapes.map(|s| placed.ball(s));
         let (centre, radius) = if balls[0].1 <= balls[1].1 { balls[0] } else { balls[1] };
         let at = |body: &BodyState, p: Vec3| body.v + body.omega.cross(p - body.r);
