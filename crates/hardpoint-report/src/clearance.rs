@@ -168,7 +168,7 @@ fn reason_in_words(model: &Model, reason: ProofFailure) -> String {
         ProofFailure::CoresMeet => {
             "the cores of the shapes meet there, and nothing is proved of how deep they are".into()
         }
-        ProofFailure::WithinRing => "bounds exist only for rings that are nearest from the outside".into(),
+        ProofFailure::WithinRing => "rings around other shapes than rods and balls have no bounds".into(),
         ProofFailure::Mesh { shape } => {
             format!("`{}` is a mesh, for which no bounds are computed", model.shapes[shape.0].name)
         }

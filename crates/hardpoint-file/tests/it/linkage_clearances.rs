@@ -3,7 +3,7 @@
 
 use hardpoint::Analysis;
 use hardpoint::model::Model;
-use hardpoint::run::{ClearanceMinimum, Clearances, MinimumPlace, PairClearance};
+use hardpoint::run::{ClearanceMinimum, ClearanceProof, Clearances, MinimumPlace, PairClearance};
 use hardpoint::topology::Formulation;
 use hardpoint_file::parse;
 use hardpoint_study::grid::{GridClearances, GridPlace};
@@ -102,13 +102,20 @@ fn assert_contacts(
 #[test]
 fn a_suspension_is_as_near_to_its_wheel_as_distances_of_its_points_show() {
     let model = model_of(&gallery("wheel_clearance"));
-    let found = Analysis::new(&model).unwrap().clearances(&[]);
+    let analysis = Analysis::new(&model).unwrap();
+    let found = analysis.clearances(&[]);
+    let mut prover = analysis.clearance_prover(&[]).unwrap();
     for (name, expected) in reference("wheel_clearance").as_object().unwrap() {
         let pair = pair(&model, &found, name);
         assert_curve(pair, &expected["curve"], 0.0, name);
         assert_minimum(&model, pair, expected, 0.0, &str::to_string, name);
         let least = pair.least().unwrap().at.distance[0];
         assert_near(least * 1e3, number(&expected["value"]), name);
+        // Rods that reach into the ring of the rim, too.
+        let proof = prover.prove(pair.shapes, least - 1e-12 * model.size());
+        assert!(matches!(proof, ClearanceProof::Proved { .. }), "{name}: {proof:?}");
+        let refused = prover.prove(pair.shapes, least + 1e-9);
+        assert!(matches!(refused, ClearanceProof::NotProved { .. }), "{name}: {refused:?}");
     }
 }
 

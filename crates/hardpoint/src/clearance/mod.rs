@@ -20,9 +20,11 @@ mod surface;
 mod swept;
 #[cfg(test)]
 mod tests;
+mod through_ring;
 
 pub(crate) use bodies::{ChangingBodies, MovingBodies};
 pub(crate) use gradient::{DistanceGradient, GradientBatch, moves_points_only};
 pub(crate) use placed::{NearestPair, PlacedShapes};
-pub(crate) use separation::{Direction, EnclosedSolid, lower_bound, separations};
+pub(crate) use separation::{Direction, EnclosedSolid, lower_bound, ring_bound, separations};
 pub(crate) use swept::ShapeAtPose;
+pub(crate) use through_ring::PlaceOnSegment;

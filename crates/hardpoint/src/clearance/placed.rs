@@ -2,7 +2,7 @@
 
 use crate::design::{BodyFixed, ShapeGeometry};
 use crate::model::{BodyId, ClearanceId, Model, PointId, ShapeId, ShapeKind, with_core};
-use crate::number;
+use crate::number::{self, Rates};
 use crate::space::{Pose, Real, Vec3};
 
 use super::bodies::{Bodies, MovingSegment, leave_their_plane};
@@ -11,6 +11,7 @@ use super::core::Core;
 use super::feature::{Feature, Placed, nearest_points};
 use super::nearest::{Nearest, nearest};
 use super::surface::{View, core_and_surface, moved, surfaces};
+use super::through_ring::PlaceOnSegment;
 
 /// The pair of a clearance whose shapes are nearest, and where they are; `None` if the clearance has no pairs.
 pub(crate) type NearestPair = Option<(usize, Nearest)>;
@@ -310,6 +311,32 @@ impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
         let pairs = &self.model.clearances[clearance.0].pairs;
         let nearest = known.get(clearance.0).copied().unwrap_or_else(|| self.nearest_pair(clearance));
         nearest.map_or_else(|| T::constant(f64::NAN), |(k, near)| self.distance(pairs[k].shapes, &near))
+    }
+}
+
+impl<B: Bodies<Rates> + ?Sized> PlacedShapes<'_, Rates, B> {
+    /// Place of a segment at which it is nearest to a circle; `None` of other cores.
+    pub fn place_on_segment(&self, shapes: [ShapeId; 2], near: &Nearest) -> Option<PlaceOnSegment> {
+        let [a, b] = number::both(shapes, |s| self.core(s));
+        let (segment, circle, of) = match (a?, b?) {
+            (Core::Segment(segment), Core::Circle(circle)) => (segment, circle, 0),
+            (Core::Circle(circle), Core::Segment(segment)) => (segment, circle, 1),
+            (
+                Core::Point(_)
+                | Core::Segment(_)
+                | Core::Circle(_)
+                | Core::Cylinder { .. }
+                | Core::HalfSpace { .. },
+                _,
+            ) => return None,
+        };
+        if let Feature::Point(end) = near.features[of] {
+            return Some(PlaceOnSegment::End(end));
+        }
+        let [from, to] = number::both(segment, |p| p.value());
+        let along = to - from;
+        let u = along.dot(near.points[of] - from) / along.dot(along);
+        Some(PlaceOnSegment::near(u, &segment, &circle))
     }
 }
 

@@ -12,6 +12,7 @@
 //! | normal | of a plane, of the cap of a cylinder, or of a facet of a hull | while that is nearest |
 //!
 //! A circle has the bound of its disc, and from a point its own: the distance by the formula of `feature.rs`, always.
+//! From a segment that goes through it, it has that of `through_ring.rs`.
 
 use crate::law::TimeJet;
 use crate::number::{self, Interval, Jet};
@@ -21,6 +22,7 @@ use super::circle::Circle;
 use super::core::Core;
 use super::feature::Feature;
 use super::nearest::Nearest;
+use super::through_ring::{EnclosedPair, PlaceOnSegment, RingBound};
 
 /// A convex solid with bounds of its place and rates.
 #[expect(clippy::large_enum_variant, reason = "there are two, made for one interval")]
@@ -42,6 +44,8 @@ pub(crate) enum Direction {
     Facet { of: usize, corners: [u32; 3] },
     /// From a point to the nearest point of a circle.
     ToCircle,
+    /// From a segment to a circle around it.
+    ThroughRing(RingBound),
 }
 
 impl Direction {
@@ -83,6 +87,18 @@ impl Direction {
             | Feature::EdgePoint(..) => None,
         })
     }
+}
+
+/// A bound of the distance of a segment and a circle around it, near this place of the segment; `None` of other solids.
+pub(crate) fn ring_bound(solids: [&EnclosedSolid; 2], near: PlaceOnSegment) -> Option<RingBound> {
+    (0..2).find_map(|circle| RingBound::of(circle, segment_and_circle(solids, circle)?, near))
+}
+
+/// The other solid, which is a segment, and this one, which is a circle.
+fn segment_and_circle(solids: [&EnclosedSolid; 2], circle: usize) -> Option<EnclosedPair<'_>> {
+    let EnclosedSolid::Core(Core::Segment(ends)) = solids[1 - circle] else { return None };
+    let EnclosedSolid::Core(Core::Circle(circle)) = solids[circle] else { return None };
+    Some((ends, circle))
 }
 
 /// Bounds, over an interval of time, of functions of which the least is at most the distance of two cores; `None` if a
@@ -129,6 +145,9 @@ pub(crate) fn separations(
             };
             return Some(vec![to_circle(*p, circle)]);
         }
+        Direction::ThroughRing(bound) => {
+            return bound.functions(segment_and_circle(solids, bound.circle())?, over);
+        }
     };
     let n = n * (Jet::constant(Interval::one()) / n.norm());
     let [of_first, of_second] = number::both([0, 1], |k| {
@@ -137,7 +156,8 @@ pub(crate) fn separations(
             Direction::Normal { .. }
             | Direction::Facet { .. }
             | Direction::Turning { .. }
-            | Direction::ToCircle => None,
+            | Direction::ToCircle
+            | Direction::ThroughRing(_) => None,
         };
         match solids[k] {
             EnclosedSolid::Core(core) => supports(core, n, side),

@@ -8,7 +8,9 @@
 use std::collections::HashMap;
 use std::rc::Rc;
 
-use crate::clearance::{Direction, EnclosedSolid, PlacedShapes, lower_bound, separations};
+use crate::clearance::{
+    Direction, EnclosedSolid, PlaceOnSegment, PlacedShapes, lower_bound, ring_bound, separations,
+};
 use crate::design::BodyFixed;
 use crate::law::TimeJet;
 use crate::model::{Model, ShapeId, ShapeKind};
@@ -139,7 +141,7 @@ pub enum ProofFailure {
     Unresolved,
     /// The cores of the shapes meet, where the distance does not say how deep the shapes are in each other.
     CoresMeet,
-    /// A ring is nearest from the inside, where only points have a bound.
+    /// A ring is nearest from the inside, where only points and segments have a bound.
     WithinRing,
     /// A shape is a mesh, which has no bounds by separation.
     Mesh {
@@ -189,6 +191,8 @@ struct Place {
     /// True if the cores are segments that cross, and the distance is the way out of each other within their plane.
     cross: bool,
     of_features: Option<Direction>,
+    /// Where a segment is nearest to a circle.
+    on_segment: Option<PlaceOnSegment>,
 }
 
 /// A part of the motion with two shapes.
@@ -370,6 +374,7 @@ impl PairProof<'_, '_> {
             direction: placed.direction(self.shapes, &near).map(rates),
             distance: near.distance,
             cross: near.is_way_out_in_plane(),
+            on_segment: placed.place_on_segment(self.shapes, &near),
         });
         self.places.insert(Rc::as_ptr(instant), place.clone());
         place
@@ -416,11 +421,32 @@ impl PairProof<'_, '_> {
             let found = part.bound(direction, middle, self.claim);
             best = self.better(best, found, false);
             if best < self.claim && found.is_some_and(|(_, convex)| convex) {
-                let found = self.least_of_convex(&part);
+                let along = |place: &Place| Some(Direction::through(place.direction?, place.instant.time()));
+                let found = self.least_of_convex(&part, &along);
                 best = self.better(best, found, false);
             }
         }
+        if best < self.claim {
+            let found = self.through_ring(&part, [from, to]);
+            best = self.better(best, found, false);
+        }
         Ok(best)
+    }
+
+    /// Bound of a segment and a circle around it.
+    fn through_ring(&mut self, part: &Part<'_>, times: [f64; 2]) -> Option<(f64, bool)> {
+        let [start, middle, end] = part.places.each_ref();
+        let bound = ring_bound(part.solids.each_ref(), middle.on_segment?)?;
+        // Through the nearest places at both ends, so that nothing is lost where the distance falls or rises.
+        let direction = Direction::ThroughRing(bound.between([start.on_segment?, end.on_segment?], times));
+        let found = part.bound(direction, middle, self.claim)?;
+        if found.0 >= self.claim || !found.1 {
+            return Some(found);
+        }
+        let along = |place: &Place| {
+            Some(Direction::ThroughRing(bound.through(place.on_segment?, place.instant.time())))
+        };
+        self.least_of_convex(part, &along)
     }
 
     /// The greater of two bounds. Cores that meet have no distance: a bound by separation is positive.
@@ -439,14 +465,18 @@ impl PairProof<'_, '_> {
         self.shapes.iter().any(|s| matches!(self.prover.model.shapes[s.0].kind, ShapeKind::Ring { .. }))
     }
 
-    /// Bound by the parabola at the time at which a convex distance is stationary.
-    fn least_of_convex(&mut self, part: &Part<'_>) -> Option<(f64, bool)> {
+    /// Bound by the parabola at the time at which a convex distance is stationary; `along` is the direction of a place.
+    fn least_of_convex(
+        &mut self,
+        part: &Part<'_>,
+        along: &dyn Fn(&Place) -> Option<Direction>,
+    ) -> Option<(f64, bool)> {
         let Interval { low: from, high: to } = part.slab.over;
         let mut place = part.places[1].clone();
         for _ in 0..STEPS {
             // Along the nearest points there, so that nothing is lost.
             let time = place.instant.time();
-            let direction = Direction::through(place.direction?, time);
+            let direction = along(&place)?;
             let gaps = separations(place.solids.each_ref(), direction, place.instant.enclosure.over)?;
             let nearest = gaps.iter().min_by(|a, b| a.value().low.total_cmp(&b.value().low))?;
             let step = -nearest.d().middle() / nearest.dd().middle();
