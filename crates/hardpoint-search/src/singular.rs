@@ -14,6 +14,8 @@ pub struct Singular {
     pub values: Vec<f64>,
     /// Unit vectors, in the same order.
     pub directions: Vec<Vec<f64>>,
+    /// Products of the matrix with the unit vectors, perpendicular to each other, as long as their singular values.
+    pub images: Vec<Vec<f64>>,
 }
 
 /// Singular values of a matrix given by its rows of n numbers.
@@ -48,6 +50,7 @@ pub fn singular(rows: &[Vec<f64>], n: usize) -> Singular {
     Singular {
         values: order.iter().map(|k| sizes[*k]).collect(),
         directions: order.iter().map(|k| v[*k].clone()).collect(),
+        images: order.iter().map(|k| columns[*k].clone()).collect(),
     }
 }
 
@@ -88,5 +91,8 @@ mod tests {
         assert!((found.values[0] - 3.0).abs() < 1e-14 && (found.values[1] - 1e-9).abs() < 1e-22);
         assert!(found.values[2] == 0.0 && found.directions[2][2].abs() == 1.0);
         assert!((found.directions[0][0].abs() - c).abs() < 1e-15, "{found:?}");
+        // Images of the directions are along the rows' own axes.
+        let images = found.images.iter().map(|image| norm(image)).zip(&found.values);
+        assert!(images.into_iter().all(|(length, value)| length == *value), "{found:?}");
     }
 }

@@ -722,7 +722,7 @@ impl<'b> FitWorkspace<'b> {
         // Directions are as long as their priors are narrow.
         let farthest = FARTHEST * self.priors.strongest(self.parameters.len());
         let bounds = [-farthest, farthest];
-        let mut solver = LeastSquares::new(none.clone(), bounds, Box::new(residuals), Box::new(derivatives))?;
+        let mut solver = LeastSquares::new(&none, bounds, Box::new(residuals), Box::new(derivatives));
         // A robust loss needs new weights after every iteration; squares keep theirs.
         let most = if self.request.loss == Loss::Squares { self.request.iterations } else { 1 };
         let is_near = |rows: &Option<Rows>| {

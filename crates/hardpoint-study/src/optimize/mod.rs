@@ -607,7 +607,7 @@ impl<'p> Descent<'p> {
     /// from within; sequential programming finishes such searches.
     fn solver(&self, squares: bool) -> Option<Box<dyn Solver + 'p>> {
         if squares {
-            least_squares(self.memory, &self.at, &self.here).map(|s| Box::new(s) as Box<dyn Solver + 'p>)
+            Some(Box::new(least_squares(self.memory, &self.at, &self.here)))
         } else {
             let found = ScaledSequential::new(self.memory, &self.at, &self.here, &self.scales);
             found.map(|s| Box::new(s) as Box<dyn Solver + 'p>)

@@ -331,24 +331,34 @@ impl<'m> Problem<'m> {
         self.settings.variables.iter().zip(&self.bounds).map(part).collect()
     }
 
-    /// Value and gradient of a limit on the design itself.
-    fn of_design(&self, limit: &Limit, design: &[f64]) -> (f64, Vec<f64>) {
+    /// Values and gradients of the limits on the design itself, in the order of [`Problem::limits`].
+    fn of_design(&self, design: &[f64]) -> Vec<(f64, Vec<f64>)> {
+        let limits = self.limits.iter().filter(|(_, of)| matches!(of, Limited::Design));
+        let targets: Vec<LimitTarget> = limits.map(|(k, _)| self.settings.limits[*k].of).collect();
+        let has_lengths = targets.iter().any(|of| matches!(of, LimitTarget::Length(_)));
+        let has_places = targets.iter().any(|of| !matches!(of, LimitTarget::Length(_)));
         let map = self.motions.analyses()[0].design_map();
-        let derivative = |v: VariableId| {
+        let mut found = vec![(f64::NAN, Vec::new()); targets.len()];
+        // The geometry by a variable is that of all limits.
+        for v in self.settings.variables.iter().filter(|_| !targets.is_empty()) {
             let mut values: Vec<Dual> = design.iter().map(|b| Dual::constant(*b)).collect();
             values[v.0] = Dual::variable(design[v.0]);
-            match limit.of {
-                LimitTarget::Coordinate(h, axis) => map.places(&values)[h.0][axis],
-                LimitTarget::Distance(a, b) => {
-                    let places = map.places(&values);
-                    (places[a.0] - places[b.0]).norm()
-                }
-                LimitTarget::Length(joint) => map.geometry(&values).kept[joint.0].distance,
-                LimitTarget::Metric(_) | LimitTarget::Margin => unreachable!("it is taken of a motion"),
+            let places = if has_places { map.places(&values) } else { Vec::new() };
+            let kept = if has_lengths { map.geometry(&values).kept } else { Vec::new() };
+            for ((value, d), of) in found.iter_mut().zip(&targets) {
+                let x = match *of {
+                    LimitTarget::Coordinate(h, axis) => places[h.0][axis],
+                    LimitTarget::Distance(a, b) => (places[a.0] - places[b.0]).norm(),
+                    LimitTarget::Length(joint) => kept[joint.0].distance,
+                    LimitTarget::Metric(_) | LimitTarget::Margin => {
+                        unreachable!("it is taken of a motion")
+                    }
+                };
+                *value = x.v;
+                d.push(x.d);
             }
-        };
-        let found: Vec<Dual> = self.settings.variables.iter().map(|v| derivative(*v)).collect();
-        (found.first().map_or(f64::NAN, |x| x.v), found.iter().map(|x| x.d).collect())
+        }
+        found
     }
 
     /// Evaluates a design.
@@ -379,10 +389,17 @@ impl<'m> Problem<'m> {
             let round_off = self.settings.goals[entry.of].weight.abs() * round_off;
             point.shares.push(GoalShare { misfits, plain, peaks, round_off });
         }
+        let mut of_design = self.of_design(&point.design).into_iter();
         for (place, (limit, of)) in self.limits.iter().enumerate() {
             match *of {
-                Limited::Design => self.add_limit(place, *limit, None, &found, &mut point)?,
-                Limited::Metric(entry) => self.add_limit(place, *limit, Some(entry), &found, &mut point)?,
+                Limited::Design => {
+                    let value = of_design.next().expect("every limit on the design has a value");
+                    self.add_limit(place, *limit, value, None, &found, &mut point);
+                }
+                Limited::Metric(entry) => {
+                    let value = self.metric(entry, &found)?;
+                    self.add_limit(place, *limit, value, Some(entry), &found, &mut point);
+                }
                 Limited::Margin(motion) => self.add_margins(place, *limit, motion, &found, &mut point)?,
             }
         }
@@ -470,15 +487,12 @@ impl<'m> Problem<'m> {
         &self,
         place: usize,
         limit: usize,
+        (value, d): (f64, Vec<f64>),
         entry: Option<MotionMetric>,
         found: &DesignEvaluation,
         point: &mut Point,
-    ) -> Result<(), Refusal> {
+    ) {
         let settings = &self.settings.limits[limit];
-        let (value, d) = match entry {
-            Some(entry) => self.metric(entry, found)?,
-            None => self.of_design(settings, &point.design),
-        };
         point.limit_values.push(value);
         let negative = |d: &[f64]| d.iter().map(|d| -d).collect::<Vec<_>>();
         let mut push = |exceeds: f64, d: Vec<f64>, equal: bool, upper: bool| {
@@ -488,7 +502,7 @@ impl<'m> Problem<'m> {
             && least == most
         {
             push(value - most, d, true, true);
-            return Ok(());
+            return;
         }
         // The time of a maximum varies with the design, so all candidates are kept within the limit.
         let parts = |extrema: &[f64], sign: f64| {
@@ -526,7 +540,6 @@ impl<'m> Problem<'m> {
                 row.spread = true;
             }
         }
-        Ok(())
     }
 
     /// A metric with its derivatives by the searched variables.

@@ -70,7 +70,7 @@ pub(super) fn least_squares<'p>(
     memory: &'p Memory<'p>,
     start: &[f64],
     point: &Point,
-) -> Option<LeastSquares<'p>> {
+) -> LeastSquares<'p> {
     let spans = memory.problem.spans();
     let size = point.misfits.values.iter().map(|r| r * r).sum::<f64>().sqrt();
     let scale = if size > 0.0 { 1.0 / size } else { 1.0 };
@@ -88,7 +88,7 @@ pub(super) fn least_squares<'p>(
             })
             .collect()
     };
-    LeastSquares::new(start.to_vec(), [0.0, 1.0], Box::new(residuals), Box::new(derivatives))
+    LeastSquares::new(start, [0.0, 1.0], Box::new(residuals), Box::new(derivatives))
 }
 
 /// Misfits of a design with their derivatives, `[J r]`, reduced to one row for every variable plus one with the same

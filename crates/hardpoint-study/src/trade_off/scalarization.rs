@@ -360,7 +360,7 @@ impl Scalarization<'_> {
 /// The matrix `V |L| V^T` of a symmetric matrix `V L V^T`, with sizes of at least `least`.
 fn sizes_of(h: &Matrix, least: f64) -> Matrix {
     let n = h.len();
-    let Singular { values, directions } = singular(h, n);
+    let Singular { values, directions, .. } = singular(h, n);
     let entry = |i: usize, j: usize| {
         values.iter().zip(&directions).map(|(s, v)| s.max(least) * v[i] * v[j]).sum::<f64>()
     };
