@@ -609,8 +609,8 @@ impl CalibrateFacts {
                 if self.priors > 0 { " and the priors" } else { "" }
             ),
             "stuck" => format!(
-                "stuck, not at the best fit: better designs do not assemble, or stop before a posture of the table; \
-                 check the measurements, or fit other variables{fit}"
+                "stuck, not at the best fit: better designs do not assemble, stop before a posture of the table, or \
+                 cannot follow a fitted variable there; check the measurements, or fit other variables{fit}"
             ),
             "diverged" => "diverged: fitted values leave every sensible range, since the readings do not determine \
                            them or do not fit the mechanism; give `bounds` or priors, fit fewer variables, or check \

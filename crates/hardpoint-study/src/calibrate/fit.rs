@@ -79,8 +79,8 @@ pub(super) struct FitWorkspace<'b> {
     /// none.
     round_off: f64,
     pub cost: RefCell<StudyCost>,
-    /// Number of designs of the current iteration that do not reach all postures.
-    unreached: Cell<usize>,
+    /// Number of designs of the current iteration without residuals or without their derivatives.
+    refused: Cell<usize>,
 }
 
 /// State of a search.
@@ -147,7 +147,7 @@ impl<'b> FitWorkspace<'b> {
             nominal: Vec::new(),
             round_off: 0.0,
             cost: RefCell::new(StudyCost { designs: 1, ..StudyCost::default() }),
-            unreached: Cell::new(0),
+            refused: Cell::new(0),
         }
     }
 
@@ -374,7 +374,7 @@ impl<'b> FitWorkspace<'b> {
         let rows = self.solve_postures(x, more).map(|postures| self.rows(&postures, x));
         let is_finite = |rows: &Rows| rows.r.iter().chain(rows.d.iter().flatten()).all(|x| x.is_finite());
         let rows = rows.filter(is_finite);
-        self.unreached.set(self.unreached.get() + usize::from(rows.is_none()));
+        self.refused.set(self.refused.get() + usize::from(rows.is_none()));
         rows
     }
 
@@ -515,7 +515,7 @@ impl<'b> FitWorkspace<'b> {
         let first = at.clone();
         progress(0, Self::squares(&at, &weights, scale) / (scale * scale));
         while iterations.len() < self.request.iterations {
-            self.unreached.set(0);
+            self.refused.set(0);
             let before = Self::squares(&at, &weights, scale);
             let mut undamped = self.undamped_step(&at, &weights, scale);
             if undamped.decrease <= near {
@@ -577,7 +577,7 @@ impl<'b> FitWorkspace<'b> {
     }
 
     /// Status of a search without further progress. A design is no optimum if the linearised problem predicts a better
-    /// one and designs on the way there were not reached.
+    /// one and designs on the way there were not reached or have no derivatives.
     fn status_at_rest(&self, x: &[f64], at: &Rows, weights: &[f64], scale: f64) -> Status {
         let (rows, right) = self.linearised(at, weights, scale);
         let undamped = |free: &[usize]| self.determined(at, weights, scale, free).directions;
@@ -586,7 +586,7 @@ impl<'b> FitWorkspace<'b> {
         let after: f64 = rows.iter().zip(&right).map(|(row, r)| (dot(row, &by) + r).powi(2)).sum();
         let before = Self::squares(at, weights, scale);
         let is_better = before - after > self.round_off.max(NEAR * before);
-        if is_better && self.unreached.get() > 0 { Status::Stuck } else { Status::Found }
+        if is_better && self.refused.get() > 0 { Status::Stuck } else { Status::Found }
     }
 
     /// Weighted derivatives and residuals of readings and priors at a point.
