@@ -1,7 +1,7 @@
 //! Points of a front, and where to look for the next.
 
 use super::functions::{Criticality, Scale, State};
-use super::scalarization::{Curvatures, Flat, Reference, Scalarization, Solved};
+use super::scalarization::{Curvatures, Reference, Scalarization, Solved};
 use super::{FrontPoint, ON_FRONT, TradeOff};
 use crate::optimize::{LIMIT_KEPT, Memory, assess, limit_scales};
 
@@ -85,7 +85,20 @@ struct Side {
 impl Side {
     /// Node at the end of a goal.
     fn end(&self, goal: usize) -> &Node {
-        &self.nodes[if goal == self.goals[0] { 0 } else { self.nodes.len() - 1 }]
+        &self.nodes[self.place_of_end(usize::from(goal != self.goals[0]))]
+    }
+
+    /// Place of the first node or the last one.
+    fn place_of_end(&self, which: usize) -> usize {
+        if which == 0 { 0 } else { self.nodes.len() - 1 }
+    }
+
+    /// Ends the side at a design that has nearly the optimum of a goal.
+    fn replace_end(&mut self, which: usize, solved: Solved, designs: usize) {
+        let (at, anchor) = (self.place_of_end(which), Some(self.goals[which]));
+        self.nodes[at] = Node { solved, anchor, is_alone: false, is_arbitrary: false, designs };
+        let gap = if which == 0 { 0 } else { self.gaps.len() - 1 };
+        self.gaps[gap] = Gap::Open(0);
     }
 }
 
@@ -145,7 +158,7 @@ impl<'p> Front<'p> {
             let criticality = state.criticality(&scale, &[goal], &[]);
             let curvatures = Curvatures::of_weights(&state, &scale, &weights);
             Node {
-                solved: Solved { flat: None, state, criticality, curvatures },
+                solved: Solved { state, criticality, curvatures },
                 anchor: Some(goal),
                 is_alone: true,
                 is_arbitrary: false,
@@ -310,7 +323,7 @@ impl<'p> Front<'p> {
         let ends: Vec<usize> = [0, 1].into_iter().filter(|which| has_many(*which)).collect();
         for _ in 0..MOST_ENDS {
             let ranges = self.scale.range.clone();
-            let replaced = ends.iter().filter(|which| self.replace_optimum(side, **which, None)).count();
+            let replaced = ends.iter().filter(|which| self.replace_optimum(side, **which)).count();
             if let Some(common) = self.common_end(side) {
                 return SideEnd::Common(Box::new(common));
             }
@@ -321,6 +334,14 @@ impl<'p> Front<'p> {
                 break;
             }
         }
+        for which in [0, 1] {
+            if self.shorten_end(side, which) {
+                self.rescale(side);
+            }
+        }
+        if let Some(common) = self.common_end(side) {
+            return SideEnd::Common(Box::new(common));
+        }
         while side.nodes.len() < points && !self.memory.interrupted() {
             let open = (0..side.gaps.len()).filter(|k| matches!(side.gaps[*k], Gap::Open(_)));
             let open = open.map(|k| (k, self.width(side, k))).filter(|(_, width)| *width > ROUND_OFF);
@@ -329,7 +350,7 @@ impl<'p> Front<'p> {
             let Some((k, width)) = widest else { break };
             let Some(mut node) = self.between(side, k, width) else {
                 let alone = [0, 1].into_iter().find(|which| self.is_optimum(side, k, *which));
-                if alone.is_some_and(|which| self.replace_optimum(side, which, None)) {
+                if alone.is_some_and(|which| self.replace_optimum(side, which)) {
                     self.rescale(side);
                     continue;
                 }
@@ -343,25 +364,13 @@ impl<'p> Front<'p> {
             if is_found && side.nodes.len() == 2 && self.pair(side, &node).iter().all(|f| *f <= COMMON) {
                 return SideEnd::Common(Box::new(node));
             }
-            if node.solved.flat.is_none()
-                && let Some(which) = self.is_slack(side, &node, k)
-            {
-                if self.replace_optimum(side, which, None) {
+            if let Some(which) = self.is_slack(side, &node, k) {
+                if self.replace_optimum(side, which) {
                     self.rescale(side);
                     continue;
                 }
                 // A better design with the same optimum.
                 (node.anchor, node.is_alone) = (Some(side.goals[which]), true);
-            }
-            if let Some(flat) = node.solved.flat {
-                let which = usize::from(flat.goal == side.goals[1]);
-                if self.replace_optimum(side, which, Some(&node)) {
-                    self.rescale(side);
-                } else {
-                    side.gaps[k] = Gap::Failed;
-                    self.failed += 1;
-                }
-                continue;
             }
             let [low, high] = [k, k + 1].map(|k| self.along(side, &side.nodes[k]));
             let at = self.along(side, &node);
@@ -435,18 +444,6 @@ impl<'p> Front<'p> {
         [0, 1].into_iter().find(|which| self.is_optimum(side, k, *which) && weights[1 - which] < NO_WEIGHT)
     }
 
-    /// Regions beside a gap in which the other goal gains much for a slight loss in one that has its optimum there.
-    fn flats(&self, side: &Side, k: usize) -> Vec<Flat> {
-        let ends = [0, 1].into_iter().filter(|which| self.is_optimum(side, k, *which));
-        let flat = |which: usize| {
-            let optimum = self.pair(side, &side.nodes[k + which]);
-            let most = optimum[which] + END_LOSSES[END_LOSSES.len() - 1];
-            let [goal, other] = [side.goals[which], side.goals[1 - which]];
-            Flat { goal, most, other, below: optimum[1 - which] - GAIN }
-        };
-        ends.map(flat).collect()
-    }
-
     /// True if a gap ends at the optimum of one of the two goals alone.
     fn is_optimum(&self, side: &Side, k: usize, which: usize) -> bool {
         let (node, is_end) = match which {
@@ -457,53 +454,78 @@ impl<'p> Front<'p> {
     }
 
     /// Replaces the optimum of a goal, where the design with this optimum is not unique or has no gradient, by the end
-    /// of the front: the design that minimises the other goal with a slight loss in the first. Returns false if it is
-    /// not found. The search starts from both ends of the side, unless a design with so small a loss is known.
-    fn replace_optimum(&mut self, side: &mut Side, which: usize, known: Option<&Node>) -> bool {
+    /// of the front: the design that minimises the other goal with a slight loss in the first, sought from both ends of
+    /// the side. Returns false if it is not found.
+    fn replace_optimum(&mut self, side: &mut Side, which: usize) -> bool {
         let [kept, other] = [side.goals[which], side.goals[1 - which]];
         let before = self.memory.cost.borrow().designs;
-        let found = match known {
-            Some(node) => {
-                let losses = &END_LOSSES[END_LOSSES.len() - 1..];
-                self.end_of(&[kept], other, &[&node.solved], losses)
-            }
-            None => {
-                let starts = [kept, other].map(|goal| &side.end(goal).solved);
-                self.end_of(&[kept], other, &starts, &END_LOSSES)
-            }
-        };
-        let at = if which == 0 { 0 } else { side.nodes.len() - 1 };
+        let starts = [kept, other].map(|goal| &side.end(goal).solved);
+        let found = self.end_of(&[kept], other, &starts, &END_LOSSES);
+        let at = side.place_of_end(which);
         let Some(solved) = found else {
             side.nodes[at].is_arbitrary |= self.is_met(&side.nodes[at].solved.state, kept);
             return false;
         };
-        let designs = self.memory.cost.borrow().designs - before + known.map_or(0, |n| n.designs);
-        let designs = designs + if side.nodes[at].is_alone { 0 } else { side.nodes[at].designs };
-        side.nodes[at] = Node { solved, anchor: Some(kept), is_alone: false, is_arbitrary: false, designs };
-        let gap = if which == 0 { 0 } else { side.gaps.len() - 1 };
-        side.gaps[gap] = Gap::Open(0);
+        let known = if side.nodes[at].is_alone { 0 } else { side.nodes[at].designs };
+        let designs = self.memory.cost.borrow().designs - before + known;
+        side.replace_end(which, solved, designs);
         true
+    }
+
+    /// Replaces the optimum of a goal alone by the design with the last of [`END_LOSSES`] if the other goal gains much
+    /// for it. This comes before any point is sought, so that the ends of a front do not depend on their number.
+    fn shorten_end(&mut self, side: &mut Side, which: usize) -> bool {
+        let [kept, other] = [side.goals[which], side.goals[1 - which]];
+        let at = side.place_of_end(which);
+        if !side.nodes[at].is_alone || self.is_degenerate(side) {
+            return false;
+        }
+        let before = self.memory.cost.borrow().designs;
+        let optimum = side.nodes[at].solved.clone();
+        let gain = |end: &Solved| {
+            let [from, to] = [&optimum, end].map(|s| s.state.scaled(&self.scale)[other]);
+            from - to
+        };
+        let (mut end, mut is_found) = (optimum.clone(), false);
+        for loss in END_LOSSES {
+            (end, is_found) = self.with_loss(&[kept], other, end, loss);
+            // With less loss it gains less.
+            if is_found && gain(&end) <= GAIN {
+                break;
+            }
+        }
+        let designs = self.memory.cost.borrow().designs - before;
+        if is_found && gain(&end) > GAIN {
+            side.replace_end(which, end, designs);
+            return true;
+        }
+        // Its neighbours start with the second derivatives that were learnt.
+        side.nodes[at].solved.curvatures = end.curvatures;
+        side.nodes[at].designs += designs;
+        false
     }
 
     /// Design that minimises a goal with a slight loss in others, the best one from several starts. The loss is reduced
     /// step by step, since designs with little of it are in a narrow curved valley.
     fn end_of(&self, kept: &[usize], other: usize, starts: &[&Solved], losses: &[f64]) -> Option<Solved> {
         let from = |start: &&Solved| -> Option<Solved> {
-            let mut end = (*start).clone();
-            let mut is_found = false;
-            for loss in losses {
-                let mut reference: Reference = vec![None; self.scale.zero.len()];
-                kept.iter().for_each(|goal| reference[*goal] = Some([*loss, 0.0]));
-                reference[other] = Some([end.state.scaled(&self.scale)[other], 1.0]);
-                let scalarization = self.scalarization(reference, 1.0);
-                let solved = scalarization.solve(end.state.clone(), end.curvatures.clone());
-                is_found = solved.as_ref().is_some_and(|s| s.criticality.residual <= ON_FRONT);
-                end = solved.unwrap_or(end);
-            }
+            let first = ((*start).clone(), false);
+            let next = |(end, _): (Solved, bool), loss: &f64| self.with_loss(kept, other, end, *loss);
+            let (end, is_found) = losses.iter().fold(first, next);
             is_found.then_some(end)
         };
         let value = |solved: &Solved| solved.state.goals[other];
         starts.iter().filter_map(from).min_by(|a, b| value(a).total_cmp(&value(b)))
+    }
+
+    /// Design that minimises a goal with a loss in others, sought from a start; the start and false if none is better.
+    fn with_loss(&self, kept: &[usize], other: usize, start: Solved, loss: f64) -> (Solved, bool) {
+        let mut reference: Reference = vec![None; self.scale.zero.len()];
+        kept.iter().for_each(|goal| reference[*goal] = Some([loss, 0.0]));
+        reference[other] = Some([start.state.scaled(&self.scale)[other], 1.0]);
+        let solved = self.scalarization(reference, 1.0).solve(start.state.clone(), start.curvatures.clone());
+        let is_found = solved.as_ref().is_some_and(|s| s.criticality.residual <= ON_FRONT);
+        (solved.unwrap_or(start), is_found)
     }
 
     fn scalarization<'s>(&'s self, reference: Reference, near: f64) -> Scalarization<'s>
@@ -516,7 +538,6 @@ impl<'p> Front<'p> {
             scale: &self.scale,
             reference,
             near,
-            flats: Vec::new(),
         }
     }
 
@@ -534,9 +555,7 @@ impl<'p> Front<'p> {
         let curvatures = Curvatures::between(&a.solved.curvatures, &b.solved.curvatures);
         let ends = [a, b].map(|n| &n.solved.state.x);
         let start = self.interpolated(side, k, middle);
-        let scalarization =
-            Scalarization { flats: self.flats(side, k), ..self.scalarization(reference, NEAR * width) };
-        self.solve(&scalarization, &start, ends, curvatures)
+        self.solve(&self.scalarization(reference, NEAR * width), &start, ends, curvatures)
     }
 
     /// Solves a scalar problem from a start, or else nearer to a known design.
@@ -558,7 +577,7 @@ impl<'p> Front<'p> {
             }
             let Some(state) = scalarization.evaluate(&start) else { continue };
             let solved = scalarization.solve(state, curvatures.clone());
-            let is_found = |s: &Solved| s.flat.is_some() || s.criticality.residual <= ON_FRONT;
+            let is_found = |s: &Solved| s.criticality.residual <= ON_FRONT;
             if let Some(solved) = solved.filter(is_found) {
                 let designs = self.memory.cost.borrow().designs - before;
                 return Some(Node { solved, anchor: None, is_alone: false, is_arbitrary: false, designs });

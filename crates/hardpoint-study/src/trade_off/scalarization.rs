@@ -10,7 +10,7 @@
 //! secant, which neighbouring points of the front inherit.
 
 use super::functions::{Criticality, Matrix, Role, Scale, State};
-use crate::optimize::{LIMIT_KEPT, Memory, Point};
+use crate::optimize::{BINDS, LIMIT_KEPT, Memory, Point};
 use hardpoint::linalg::semidefinite;
 use hardpoint_search::quadratic::{Linear, Minimum, minimize};
 use hardpoint_search::{Singular, dot, norm, singular};
@@ -59,21 +59,9 @@ pub(super) struct Curvatures {
     multipliers: Vec<f64>,
 }
 
-/// Region of the goals in which a search ends, since the front does: this goal at most at one value, the other below
-/// another.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Flat {
-    pub goal: usize,
-    pub most: f64,
-    pub other: usize,
-    pub below: f64,
-}
-
 /// Design on the front.
 #[derive(Clone, Debug)]
 pub(super) struct Solved {
-    /// The region in which the search ended, before it found a point.
-    pub flat: Option<Flat>,
     pub state: State,
     pub criticality: Criticality,
     pub curvatures: Curvatures,
@@ -87,8 +75,6 @@ pub(super) struct Scalarization<'p> {
     pub reference: Reference,
     /// Distance between the goals and the line of the reference that is near enough.
     pub near: f64,
-    /// Regions in which the search ends.
-    pub flats: Vec<Flat>,
 }
 
 /// Step of the quadratic program.
@@ -117,6 +103,14 @@ impl Scalarization<'_> {
         [true, false].map(goals)
     }
 
+    /// Distance of a design from the first-order condition. A goal that is a limit counts where it is active.
+    fn criticality(&self, state: &State) -> Criticality {
+        let [traded, mut fixed] = self.traded();
+        let scaled = state.scaled(self.scale);
+        fixed.retain(|goal| self.reference[*goal].is_some_and(|[a, _]| scaled[*goal] > a - BINDS));
+        state.criticality(self.scale, &traded, &fixed)
+    }
+
     /// Position `t` of each goal along the direction.
     fn positions(&self, state: &State) -> Vec<f64> {
         let goals = state.scaled(self.scale).into_iter().zip(&self.reference);
@@ -133,8 +127,7 @@ impl Scalarization<'_> {
 
     /// Searches from a design that can be evaluated. Returns the design with the smallest residual.
     pub fn solve(&self, start: State, mut curvatures: Curvatures) -> Option<Solved> {
-        let [traded, fixed] = self.traded();
-        let criticality = start.criticality(self.scale, &traded, &fixed);
+        let criticality = self.criticality(&start);
         curvatures.fit(&start);
         let (mut here, mut critical) = (start, criticality);
         let (mut radius, mut penalty) = (RADIUS, PENALTY);
@@ -150,12 +143,6 @@ impl Scalarization<'_> {
             }
             if self.memory.interrupted() {
                 return None;
-            }
-            let goals = here.scaled(self.scale);
-            let is_in = |f: &&Flat| is_kept && goals[f.goal] <= f.most && goals[f.other] < f.below;
-            if let Some(flat) = self.flats.iter().find(is_in) {
-                let flat = Some(*flat);
-                return Some(Solved { flat, state: here, criticality: critical, curvatures });
             }
             let Some(mut step) = self.step(&here, &mut curvatures, radius, penalty) else { break };
             while step.forces > 0.5 * penalty && penalty < MOST_PENALTY {
@@ -177,7 +164,7 @@ impl Scalarization<'_> {
                 continue;
             };
             curvatures.learn(&here, &next);
-            let critical_next = next.criticality(self.scale, &traded, &fixed);
+            let critical_next = self.criticality(&next);
             let value = |(t, v): (f64, f64)| t + penalty * v.max(0.0);
             let (now, then) = (value((t, violation)), value(self.merit(&next)));
             recent.push(now);
@@ -197,7 +184,7 @@ impl Scalarization<'_> {
                 break;
             }
         }
-        best.map(|(state, criticality)| Solved { flat: None, state, criticality, curvatures })
+        best.map(|(state, criticality)| Solved { state, criticality, curvatures })
     }
 
     /// Step of the quadratic model; its multipliers enter the second derivatives.
