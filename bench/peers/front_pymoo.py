@@ -5,7 +5,8 @@
     venv/bin/python bench/peers/front_pymoo.py target/release/hardpoint
 
 NSGA-II has pymoo's defaults (population 100, simulated binary crossover, polynomial mutation) and the limits as
-constraints. Its designs are solved by `hardpoint sweep --designs`, without derivatives. The hypervolume is that of the
+constraints. `--population 0` gives it as many designs as the front has points, so that both answer with the same
+number. Its designs are solved by `hardpoint sweep --designs`, without derivatives. The hypervolume is that of the
 feasible non-dominated designs of a generation, below 1.1 times the ranges of the goals over a front of 200 points.
 """
 
@@ -69,10 +70,12 @@ class Wishbone(Problem):
         out["G"] = np.column_stack([steer - BUMP_STEER, np.linalg.norm(rod, axis=1) - TIE_ROD])
 
 
-def designs_needed(command: str, dense: dict, targets: list[float], volume, seed: int, most: int) -> list:
+def designs_needed(
+    command: str, dense: dict, targets: list[float], volume, seed: int, most: int, population: int
+) -> list:
     """Designs that NSGA-II evaluates until it has each hypervolume; None if it does not reach it."""
     problem = Wishbone(command, dense["variables"])
-    algorithm = NSGA2(pop_size=100)
+    algorithm = NSGA2(pop_size=population)
     algorithm.setup(problem, termination=NoTermination(), seed=seed)
     reached = [None] * len(targets)
     while problem.designs < most and None in reached:
@@ -90,6 +93,7 @@ def main():
     parser.add_argument("command", help="path of hardpoint")
     parser.add_argument("--points", type=int, nargs="+", default=[15, 30, 60])
     parser.add_argument("--seeds", type=int, default=3)
+    parser.add_argument("--population", type=int, default=100, help="of NSGA-II; 0 for as many as the front has points")
     parser.add_argument("--most", type=int, default=100_000, help="designs of NSGA-II")
     options = parser.parse_args()
     dense = front(options.command, 200)
@@ -102,10 +106,15 @@ def main():
     print(f"hypervolume of 200 points: {volume(goals):.6f}")
     for n, f, target in zip(options.points, fronts, targets):
         print(f"{n} points: {f['evaluations']['designs']} designs, hypervolume {target:.6f}, residual {f['kkt']:.1e}")
-    runs = [
-        designs_needed(options.command, dense, targets, volume, seed, options.most) for seed in range(options.seeds)
-    ]
-    for n, f, counts in zip(options.points, fronts, zip(*runs)):
+    needed = lambda targets, seed, population: designs_needed(
+        options.command, dense, targets, volume, seed, options.most, population
+    )
+    seeds = range(options.seeds)
+    if options.population:
+        by_points = zip(*(needed(targets, seed, options.population) for seed in seeds))
+    else:
+        by_points = [[needed([t], seed, n)[0] for seed in seeds] for n, t in zip(options.points, targets)]
+    for n, f, counts in zip(options.points, fronts, by_points):
         ours = f["evaluations"]["designs"]
         reached = [c if c is not None else float("inf") for c in counts]
         middle = statistics.median(reached)

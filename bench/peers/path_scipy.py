@@ -1,4 +1,4 @@
-"""CPU time per hit of two path syntheses of `models/synthesis`, beside scipy's `least_squares`, in one run.
+"""CPU time per hit of three path syntheses of `models/synthesis`, beside scipy's `least_squares`, in one run.
 
     python -m venv venv && venv/bin/pip install -r bench/peers/requirements.txt
     cargo build --release
@@ -53,7 +53,14 @@ def loop(links):
     return coupler_point(*lengths, np.radians(turn), np.radians(start + 20 * np.arange(18)))
 
 
-PROBLEMS = {"arc_five_points": arc, "loop_eighteen_points": loop}
+def circle(links):
+    *lengths, turn, start = links[:10]
+    # The first angle and the last are given.
+    free = np.concatenate([[0], links[10:], [0]])
+    return coupler_point(*lengths, np.radians(turn), np.radians(start + 40 * np.arange(10) + free))
+
+
+PROBLEMS = {"arc_five_points": arc, "loop_eighteen_points": loop, "circle_ten_points": circle}
 
 
 def problem(name: str):
@@ -62,33 +69,37 @@ def problem(name: str):
     targets = [np.array([y for _, y in model["metrics"][axis]["target"]]) for axis in ("x", "y")]
     path = PROBLEMS[name]
     variables = [p for p in model["parameters"].values() if "bounds" in p]
+    variables += [{"value": 0, **angle} for angle in model.get("design", {}).values()]
     low, high = np.array([p["bounds"] for p in variables], dtype=float).T
     misfits = lambda links: np.concatenate([a - b for a, b in zip(path(links), targets)])
     return misfits, low, high, np.array([p["value"] for p in variables], dtype=float)
 
 
-def of_scipy(name: str, starts: int) -> tuple[list[float], float]:
+def of_scipy(name: str, starts: int) -> tuple[list[float], int, float]:
     misfits, low, high, nominal = problem(name)
     designs = low + qmc.Sobol(len(low), seed=1).random(starts) * (high - low)
     designs[0] = np.clip(nominal, low, high)
     begin = time.process_time()
-    errors = []
+    errors, evaluated = [], 0
     for design in designs:
         found = least_squares(
             misfits, design, bounds=(low, high), x_scale=high - low, max_nfev=500, xtol=1e-12, ftol=1e-14, gtol=1e-14
         )
         errors.append(2 * found.cost)
-    return errors, time.process_time() - begin
+        # Each derivative takes a design for every variable.
+        evaluated += found.nfev + len(low) * found.njev
+    return errors, evaluated, time.process_time() - begin
 
 
-def of_hardpoint(command: str, name: str, starts: int) -> tuple[list[float], float]:
+def of_hardpoint(command: str, name: str, starts: int) -> tuple[list[float], int, float]:
     used = lambda: sum(resource.getrusage(resource.RUSAGE_CHILDREN)[:2])
     begin = used()
     arguments = ["--starts", str(starts), "--threads", "1", "--json"]
     found = subprocess.run([command, "optimize", MODELS / f"{name}.toml", *arguments], capture_output=True)
     seconds = used() - begin
-    objectives = [start["objective"] for start in json.loads(found.stdout)["starts"]]
-    return [np.inf if x is None else x for x in objectives], seconds
+    facts = json.loads(found.stdout)
+    objectives = [start["objective"] for start in facts["starts"]]
+    return [np.inf if x is None else x for x in objectives], facts["evaluations"]["designs"], seconds
 
 
 def main():
@@ -101,12 +112,16 @@ def main():
             "scipy": of_scipy(name, options.starts),
             "hardpoint": of_hardpoint(options.command, name, options.starts),
         }
-        best = min(min(errors) for errors, _ in results.values())
+        best = min(min(errors) for errors, *_ in results.values())
         print(f"{name}: best error {best:.6g}")
-        for side, (errors, seconds) in results.items():
+        for side, (errors, designs, seconds) in results.items():
             hits = sum(error <= HIT * best for error in errors)
-            per_hit = f"{1000 * seconds / hits:.3g} ms" if hits else "no hit"
-            print(f"  {side}: {hits} hits of {len(errors)} starts, {seconds:.3f} s of CPU, {per_hit} per hit", flush=True)
+            per_hit = f"{1000 * seconds / hits:.3g} ms and {designs / hits:.0f} designs" if hits else "no hit"
+            print(
+                f"  {side}: {hits} hits of {len(errors)} starts, {designs} designs, {seconds:.3f} s of CPU, "
+                f"{per_hit} per hit",
+                flush=True,
+            )
 
 
 if __name__ == "__main__":
