@@ -83,7 +83,7 @@ struct Step {
     /// Predicted decrease of the merit.
     gain: f64,
     multipliers: Vec<f64>,
-    /// Sum of the multipliers of limits.
+    /// Sum of the multipliers of limits and of goals that are limits.
     forces: f64,
 }
 
@@ -214,6 +214,9 @@ impl Scalarization<'_> {
             // The smooth part of a goal has the multiplier of its goal.
             for (owner, m) in owners.iter().zip(&multipliers) {
                 let Owner::Goal(goal) = *owner else { continue };
+                if self.reference[goal].is_some_and(|[_, direction]| direction == 0.0) {
+                    forces += m;
+                }
                 if let Some(k) = state.functions.iter().position(|f| f.role == Role::Goal(goal)) {
                     by_function[k] += m / self.scale.range[goal];
                 }
