@@ -29,7 +29,7 @@ fn number(value: &Value) -> f64 {
     value.as_str().unwrap().parse().unwrap()
 }
 
-fn pair<'c>(model: &Model, found: &'c Clearances, clearance: &str) -> &'c PairClearance {
+fn pair<'c>(model: &'c Model, found: &'c Clearances, clearance: &str) -> &'c PairClearance {
     let clearance = model.clearances.iter().find(|c| c.name == clearance).unwrap();
     found.of(clearance).next().unwrap().1
 }

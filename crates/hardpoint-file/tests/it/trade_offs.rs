@@ -338,7 +338,8 @@ fn the_ends_of_a_front_do_not_depend_on_the_number_of_points() {
         let found = traded(&model, Some(points));
         check(&found);
         for (p, end) in [&found.points[0], found.points.last().unwrap()].into_iter().zip(ends) {
-            let off = p.values.iter().zip(end).map(|(value, end)| (1e3 * value - end).abs()).fold(0.0, f64::max);
+            let off =
+                p.values.iter().zip(end).map(|(value, end)| (1e3 * value - end).abs()).fold(0.0, f64::max);
             assert!(off < SAME_END, "{points} points: {:?} {end:?}", p.values);
         }
     }

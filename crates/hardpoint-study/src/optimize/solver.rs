@@ -66,11 +66,7 @@ pub(super) trait Solver {
 }
 
 /// Solver for squared goals without limits other than bounds.
-pub(super) fn least_squares<'p>(
-    memory: &'p Memory<'p>,
-    start: &[f64],
-    point: &Point,
-) -> LeastSquares<'p> {
+pub(super) fn least_squares<'p>(memory: &'p Memory<'p>, start: &[f64], point: &Point) -> LeastSquares<'p> {
     let spans = memory.problem.spans();
     let size = point.misfits.values.iter().map(|r| r * r).sum::<f64>().sqrt();
     let scale = if size > 0.0 { 1.0 / size } else { 1.0 };

@@ -243,7 +243,7 @@ fn batched_steps_are_the_same_as_single_steps() {
 
 #[test]
 fn eight_designs_in_lanes_are_the_same_as_one_by_one() {
-    let mut away = 0;
+    let mut side_by_side = Vec::new();
     for (name, late) in REFERENCES.into_iter().flat_map(|name| [(name, false), (name, true)]) {
         let mut draft = reference_draft(name);
         if late {
@@ -251,29 +251,32 @@ fn eight_designs_in_lanes_are_the_same_as_one_by_one() {
             draft.times.drain(..draft.times.len() / 3);
         }
         let model = Model::from_draft(&draft).unwrap();
-        away += usize::from(model.drivers.iter().any(|d| d.law.at(model.times[0]).value().abs() > 1e-3));
+        let is_away = model.drivers.iter().any(|d| d.law.at(model.times[0]).value().abs() > 1e-3);
         let analysis = Analysis::new(&model).unwrap();
         let nominal = analysis.run();
         let followed: Vec<usize> =
             (0..model.variables.len()).filter(|&v| nominal.sensitivities.at(0, v).is_some()).collect();
-        // Eleven designs: a full group of lanes and a part of one.
-        let designs: Vec<Vec<f64>> = (0..11)
+        // Full groups of lanes and a part of one, and so many that programs pay.
+        let designs: Vec<Vec<f64>> = (0..43)
             .map(|k| {
                 let mut design = vec![0.0; model.variables.len()];
-                design[followed[k % followed.len()]] = 1e-3 * (k as f64 - 5.0);
+                design[followed[k % followed.len()]] = 1e-3 * ((k % 11) as f64 - 5.0);
                 design
             })
             .collect();
         for (design, lane) in designs.iter().zip(designs_of(&analysis, &designs)) {
             let single = analysis.solve(Run::new().at(design).without_sensitivities());
             assert!(lane.stop.is_none() && single.stop.is_none());
-            assert_eq!(lane.motion.effort.by_program, model.times.len(), "{name}, late: {late}");
+            if is_away && lane.motion.effort.by_program == model.times.len() {
+                side_by_side.push(name);
+            }
             // Round-off differs only where lanes share a pivot order that one design alone would not choose.
             let d = difference(&lane, &single);
             assert!(d < 1e-11, "{name}, late: {late}: {d:e}");
         }
     }
-    assert!(away >= REFERENCES.len() / 2, "{away} begin elsewhere");
+    side_by_side.dedup();
+    assert!(side_by_side.len() >= 5, "only {side_by_side:?} are solved side by side from elsewhere");
 }
 
 /// Keeps what a sink gets, in the layout of a solution.
