@@ -1,7 +1,7 @@
 //! Motions exported as C, compiled, and compared with those of the engine.
 //!
-//! The compiler is `cc`, which Rust itself links with; where `clang` is installed, it compiles derivatives by the design,
-//! for which it takes less time.
+//! The compiler is `cc`, which Rust itself links with; where `clang` is installed, it compiles derivatives by the
+//! design, for which it takes less time.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};

@@ -528,8 +528,8 @@ impl TradeOffFacts {
         write_rows(out, &columns, &self.points)
     }
 
-    /// Plot of the front: the goals first, over which it opens, then the variables. Of a goal with a target it shows the
-    /// metric instead of the distance, unless it has several cases.
+    /// Plot of the front: the goals first, over which it opens, then the variables. Of a goal with a target it shows
+    /// the metric instead of the distance, unless it has several cases.
     fn plot(&self) -> SweepPlot {
         let metric_of = |g: &TradedGoal, p: &PointFact| {
             let mut own = p.metrics.iter().filter(|m| m.name == g.metric);

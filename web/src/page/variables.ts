@@ -140,7 +140,7 @@ function bringIntoView(list: HTMLElement, { offsetTop: top, offsetHeight: height
   }
 }
 
-/** A row of a variable; one with a `nominal` value is a parameter, of which the fields have values instead of changes. */
+/** A row of a variable; one with a `nominal` value is a parameter, whose fields have values instead of changes. */
 function row(state: State, variable: Variable, nominal: number | undefined, limits: VariableLimits | undefined): Row {
   const { index, name, unit, admissibility } = variable
   const able = admissibility !== 'cannot_follow'

@@ -167,10 +167,10 @@ class Scatter {
     this.#picture.append(
       svg('circle', { class: 'pointed', cx: this.#axes.x.at(over.values[k]), cy: this.#axes.y.at(of.values[k]), r: 6 }),
     )
-    const all = this.sweep.axes.map(
-      ({ name, unit, target, values }) =>
-        `${name} ${Number.isFinite(values[k]) ? figure(Number(values[k].toPrecision(5)), unit) : 'no value'}${target === null ? '' : ` (target ${figure(target, unit)})`}`,
-    )
+    const all = this.sweep.axes.map(({ name, unit, target, values }) => {
+      const value = Number.isFinite(values[k]) ? figure(Number(values[k].toPrecision(5)), unit) : 'no value'
+      return `${name} ${value}${target === null ? '' : ` (target ${figure(target, unit)})`}`
+    })
     this.#reading.textContent = `${this.sweep.what} ${k * this.sweep.step}: ${all.join(', ')}`
   }
 

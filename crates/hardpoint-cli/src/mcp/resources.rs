@@ -99,7 +99,7 @@ mod tests {
     use super::*;
 
     /// Documents for contributors.
-    const OTHERS: [&str; 2] = ["development.md", "release.md"];
+    const OTHERS: [&str; 3] = ["development.md", "page-review.md", "release.md"];
 
     #[test]
     fn all_documents_are_served_but_those_for_contributors() {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use hardpoint::measure::outputs;
+use hardpoint::measure::{Output, outputs};
 use hardpoint::model::{Dimension, DriverId, ElementId, Measurements, Reading};
 
 use crate::values::{DataError, Diagnostics, Source, closest, shown};
@@ -83,64 +83,14 @@ impl ModelFile {
         let holds = self.columns(table, file)?;
         let given = self.sigmas_given(sigmas)?;
         let drivers = &self.model.drivers;
-        let has = |wanted: Holds| place_of(&holds, wanted);
-        let as_drawn =
-            (0..drivers.len()).filter(|d| has(Holds::Driver(*d)).is_none()).map(DriverId).collect();
+        let is_given = |d: &usize| place_of(&holds, Holds::Driver(*d)).is_some();
+        let as_drawn = (0..drivers.len()).filter(|d| !is_given(d)).map(DriverId).collect();
         let mut found = MeasuredData { measurements: Measurements::default(), lines: Vec::new(), as_drawn };
-        let drawn: Vec<f64> = (0..drivers.len()).map(|d| self.model.as_drawn(DriverId(d))).collect();
+        let drawn = (0..drivers.len()).map(|d| self.model.as_drawn(DriverId(d))).collect();
         let outputs = outputs(&self.model);
+        let rows = MeasuredRows { of: self, table, file, holds, given, drawn, outputs };
         for (line, cells) in &table.rows {
-            let here = |column: usize| {
-                format!(
-                    "`{file}`, line {line}, column {} (`{}`)",
-                    column + 1,
-                    shown(&table.titles[column].name)
-                )
-            };
-            let mut positions = drawn.clone();
-            let mut forces = Vec::new();
-            let posture = found.lines.len();
-            for (column, (held, cell)) in holds.iter().zip(cells).enumerate() {
-                let Some(read) = *held else { continue };
-                match (read.holds, cell) {
-                    (Holds::Driver(d), Some(x)) => {
-                        let quantity = self.model.driven(&drivers[d]).quantity;
-                        positions[d] = read.units.to_si(quantity, read.factor * x);
-                    }
-                    (Holds::Force(e), Some(x)) => forces.push((ElementId(e), read.factor * x)),
-                    (Holds::Driver(_) | Holds::Force(_), None) => {
-                        let help = "give the value of every driver and force of the first line";
-                        return Err(DataError::new("HP0112", format!("{} is missing", here(column)), help));
-                    }
-                    (Holds::Sigma(_), Some(x)) if !(*x > 0.0) => {
-                        let help = "give a number above zero, or leave the cell empty";
-                        return Err(DataError::new(
-                            "HP0249",
-                            format!("{} cannot be {x}", here(column)),
-                            help,
-                        )
-                        .note("it is the standard deviation of a reading"));
-                    }
-                    (Holds::Output(m), Some(x)) => {
-                        let dimension = outputs[m].dimension;
-                        let own = has(Holds::Sigma(m)).and_then(|column| {
-                            // Standard deviations without a unit of their own have that of their readings.
-                            let own = table.titles[column].unit.as_ref().and(holds[column]);
-                            Some(own.unwrap_or(read).in_si(dimension, cells[column]?))
-                        });
-                        let given = given[m].map(|sigma| sigma / self.units.from_si(dimension, 1.0));
-                        let value = read.in_si(dimension, *x);
-                        let reading = Reading { posture, output: m, value, sigma: own.or(given) };
-                        found.measurements.readings.push(reading);
-                    }
-                    (Holds::Sigma(_), _) | (Holds::Output(_), None) => {}
-                }
-            }
-            found.measurements.postures.push(positions);
-            if holds.iter().any(|h| matches!(h, Some(MeasuredColumn { holds: Holds::Force(_), .. }))) {
-                found.measurements.forces.push(forces);
-            }
-            found.lines.push(*line);
+            rows.add(*line, cells, &mut found)?;
         }
         if found.measurements.readings.is_empty() {
             let help = "write numbers below the names of measures and points";
@@ -304,5 +254,77 @@ impl ModelFile {
             ));
         }
         Ok(())
+    }
+}
+
+/// Rows of readings, with what their columns hold.
+struct MeasuredRows<'a> {
+    of: &'a ModelFile,
+    table: &'a Readings,
+    file: &'a str,
+    holds: Vec<Option<MeasuredColumn>>,
+    /// Standard deviation of each output, where one is given for all its readings.
+    given: Vec<Option<f64>>,
+    /// Values of the drivers in the design configuration.
+    drawn: Vec<f64>,
+    outputs: Vec<Output>,
+}
+
+impl MeasuredRows<'_> {
+    /// Adds the posture and the readings of a row.
+    fn add(&self, line: u64, cells: &[Option<f64>], found: &mut MeasuredData) -> Result<(), DataError> {
+        let Self { of: ModelFile { model, .. }, holds, .. } = self;
+        let (mut positions, mut forces) = (self.drawn.clone(), Vec::new());
+        let posture = found.lines.len();
+        for (column, (held, cell)) in holds.iter().zip(cells).enumerate() {
+            let Some(read) = *held else { continue };
+            match (read.holds, cell) {
+                (Holds::Driver(d), Some(x)) => {
+                    let quantity = model.driven(&model.drivers[d]).quantity;
+                    positions[d] = read.units.to_si(quantity, read.factor * x);
+                }
+                (Holds::Force(e), Some(x)) => forces.push((ElementId(e), read.factor * x)),
+                (Holds::Driver(_) | Holds::Force(_), None) => {
+                    let message = format!("{} is missing", self.place(line, column));
+                    let help = "give the value of every driver and force of the first line";
+                    return Err(DataError::new("HP0112", message, help));
+                }
+                (Holds::Sigma(_), Some(x)) if !(*x > 0.0) => {
+                    let message = format!("{} cannot be {x}", self.place(line, column));
+                    let help = "give a number above zero, or leave the cell empty";
+                    let note = "it is the standard deviation of a reading";
+                    return Err(DataError::new("HP0249", message, help).note(note));
+                }
+                (Holds::Output(m), Some(x)) => {
+                    let value = read.in_si(self.outputs[m].dimension, *x);
+                    let sigma = self.sigma(m, read, cells);
+                    found.measurements.readings.push(Reading { posture, output: m, value, sigma });
+                }
+                (Holds::Sigma(_), _) | (Holds::Output(_), None) => {}
+            }
+        }
+        found.measurements.postures.push(positions);
+        if holds.iter().flatten().any(|column| matches!(column.holds, Holds::Force(_))) {
+            found.measurements.forces.push(forces);
+        }
+        found.lines.push(line);
+        Ok(())
+    }
+
+    /// Standard deviation of a reading of an output, SI.
+    fn sigma(&self, output: usize, read: MeasuredColumn, cells: &[Option<f64>]) -> Option<f64> {
+        let dimension = self.outputs[output].dimension;
+        let own = place_of(&self.holds, Holds::Sigma(output)).and_then(|column| {
+            // Without a unit of its own it has that of the reading.
+            let own = self.table.titles[column].unit.as_ref().and(self.holds[column]);
+            Some(own.unwrap_or(read).in_si(dimension, cells[column]?))
+        });
+        own.or_else(|| self.given[output].map(|sigma| sigma / self.of.units.from_si(dimension, 1.0)))
+    }
+
+    /// The place of a number, in words.
+    fn place(&self, line: u64, column: usize) -> String {
+        let title = shown(&self.table.titles[column].name);
+        format!("`{}`, line {line}, column {} (`{title}`)", self.file, column + 1)
     }
 }

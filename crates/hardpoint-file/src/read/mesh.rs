@@ -296,7 +296,19 @@ pub(super) fn surface(
     }
     let found = surface_in_file(r, &said.file.0);
     let Mesh { vertices, triangles, frame, file } = placed(r, &said, found)?;
-    let open = open_edges(&triangles);
+    remark_on_surface(r, shape, f, (&vertices, &triangles), &file);
+    Some((vertices, triangles, frame == MeshFrame::Body))
+}
+
+/// HP0119: an open surface. HP0120: closed parts that overlap.
+fn remark_on_surface(
+    r: &mut Reader<'_>,
+    shape: &Fields<'_>,
+    f: Field<'_>,
+    (vertices, triangles): (&[Vec3], &[[u32; 3]]),
+    file: &str,
+) {
+    let open = open_edges(triangles);
     let metres = r.units.length.metres(1.0);
     // Six decimals of the model's unit: corners of STL files have no more digits.
     let place = |p: Vec3| {
@@ -307,7 +319,7 @@ pub(super) fn surface(
         let edges = if open.len() == 1 { "1 edge".into() } else { format!("{} edges", open.len()) };
         let note = format!(
             "at {edges} of `{}` triangles have no neighbour with the same orientation; one runs from {} to {}",
-            shown(&file),
+            shown(file),
             place(a),
             place(b)
         );
@@ -318,14 +330,13 @@ pub(super) fn surface(
             "it has no inside: a shape within it is as far from it as from its nearest triangle".into(),
         );
         d.help = Some("if it should be a solid, export it again with all edges closed".into());
-    } else if let Some(at) = overlap_of_parts(&vertices, &triangles) {
+    } else if let Some(at) = overlap_of_parts(vertices, triangles) {
         let message = format!("closed parts of {} overlap or touch", shape.what);
         let d = r.remark(Severity::Note, "HP0120", f.value.span(), message);
-        d.notes.push(format!("two parts of `{}` meet at {}", shown(&file), place(at)));
+        d.notes.push(format!("two parts of `{}` meet at {}", shown(file), place(at)));
         d.notes.push("faces of one part within another count as surface: depths there are too small".into());
         d.help = Some("unite the parts in the program that exports them".into());
     }
-    Some((vertices, triangles, frame == MeshFrame::Body))
 }
 
 /// Triangles of a shape's file, in the file's own unit and axes. The text of a model is passed with these triangles,

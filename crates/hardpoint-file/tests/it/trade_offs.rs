@@ -327,8 +327,8 @@ goals = {{ first = {{}}, second = {{}} }}
     ))
 }
 
-/// Near the optimum of the second goal the first one gains much for next to nothing. A front once ended at this optimum,
-/// unless it had so many points that one was sought near it.
+/// Near the optimum of the second goal the first one gains much for next to nothing. A front once ended at this
+/// optimum, unless it had enough points for one to be sought near it.
 #[test]
 fn the_ends_of_a_front_do_not_depend_on_the_number_of_points() {
     let model = curve("\"u + v\", \"(1 - u)^8 + v\"");

@@ -85,8 +85,8 @@ impl Loss {
 pub enum Status {
     /// No small change of the design improves the fit.
     Found,
-    /// Better designs cannot be used: the mechanism does not assemble, stops before a posture, or cannot follow a fitted
-    /// variable there.
+    /// Better designs cannot be used: the mechanism does not assemble, stops before a posture, or cannot follow a
+    /// fitted variable there.
     Stuck,
     /// A parameter has left every sensible range: the readings do not determine it, or do not fit the mechanism.
     Diverged,

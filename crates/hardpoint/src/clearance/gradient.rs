@@ -36,9 +36,9 @@ use super::placed::PlacedShapes;
 /// Derivatives of the distance of two shapes at one time, by the poses of their bodies and by their points.
 pub(crate) struct DistanceGradient {
     shapes: [ShapeId; 2],
-    /// Of bodies that move: one per shape, or one per end of a capsule between two bodies.
+    /// Loads of bodies that move: one per shape, or one per end of a capsule between two bodies.
     bodies: [Option<BodyLoad>; 4],
-    /// Of points that move all of a shape, and of the ends of capsules.
+    /// Loads of points that move all of a shape, and of the ends of capsules.
     points: [Option<PointLoad>; 4],
 }
 

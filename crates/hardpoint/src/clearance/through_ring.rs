@@ -7,8 +7,8 @@
 //! D  =  sqrt(2 h),    h  =  (z^2 + (rho - R)^2) / 2
 //! ```
 //!
-//! Where `h_uu >= m > 0` over a part of the segment, each of its points is at least as far as
-//! `h(u0) - h_u(u0)^2 / (2 m)` says, for any u0 in it, or `h(u0)` at an end of the segment from which h rises. u0 goes
+//! If `h_uu >= m > 0` over a part of the segment, each of its points is at least as far as
+//! `h(u0) - h_u(u0)^2 / (2 m)`, for any u0 in it, or `h(u0)` at an end of the segment from which h rises. u0 goes
 //! with the nearest point, where `h_u = 0` and nothing is lost. The other parts are at least as far as their middle,
 //! less half of their length.
 
@@ -62,7 +62,7 @@ enum PlaceOverTime {
 /// Bound of the distance of a segment and a circle over an interval of time.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RingBound {
-    /// Which of two cores is the circle.
+    /// Index of the core that is the circle.
     circle: usize,
     /// Parts of the segment over which h is convex, from the first to before the last.
     convex: [usize; 2],
@@ -134,7 +134,7 @@ impl RingBound {
         Self { place, ..self }
     }
 
-    /// Which of two cores is the circle.
+    /// Index of the core that is the circle.
     pub(super) fn circle(&self) -> usize {
         self.circle
     }

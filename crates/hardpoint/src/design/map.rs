@@ -20,7 +20,7 @@ use crate::law::Law;
 use crate::model::element::ActsOn;
 use crate::model::{
     BodyId, Change, DesignVariable, Direction, Driver, DriverId, ElementId, HardpointId, Joint, JointId,
-    Length, Measure, MeasureKind, Model, NumberId, PointId, Shape, ShapeKind, SharedModel, Source, Target,
+    Length, Measure, Model, NumberId, PointId, Shape, ShapeKind, SharedModel, Source, Target,
     VariableId,
 };
 use crate::number::{self, Dual, Real};
@@ -122,7 +122,7 @@ impl<'m> DesignMap<'m> {
     pub(crate) fn fixed<T: Real>(&self, values: &[T]) -> BodyFixed<T> {
         let (model, design) = (self.model(), PlacedDesign::new(self, values.to_vec()));
         let markers = |m: &Measure| {
-            if let MeasureKind::Deflection { force, .. } = m.kind {
+            if let Some((force, _)) = m.kind.elastic() {
                 return design.elastic_markers(force.0);
             }
             let joint = m.kind.joint_value()?;

@@ -293,8 +293,8 @@ macro_rules! measures {
         positive: "",
         words: format!("articulation of joint `{}`", model.joints[joint.0].name);
 
-    /// Deflection of an elastic joint or bushing in one direction: displacement of its second body relative to the
-    /// first along an axis of the joint or bushing, or rotation about it as the Cardan angle of its law.
+    /// Deflection of an elastic joint or bushing: displacement of its second body relative to the first along an axis,
+    /// or Cardan angle about it.
     Deflection "deflection" [Pose, NotDrivable, Polar, normal: false] {
         /// Name of the elastic joint or bushing.
         force: String => ElasticId,
@@ -503,6 +503,17 @@ macro_rules! in_models {
                 }
             }
 
+            /// Elastic joint or bushing whose deflection it is, and in which direction.
+            pub fn elastic(&self) -> Option<(ElasticId, ElasticDirection)> {
+                match self {
+                    $(Self::$variant { $($field),* } => {
+                        let parts: [(Option<ElasticId>, Option<ElasticDirection>); _] = [$($field.elastic()),*];
+                        parts.iter().find_map(|part| part.0).zip(parts.iter().find_map(|part| part.1))
+                    })*
+                    Self::Wheel { .. } | Self::Axle { .. } => None,
+                }
+            }
+
             /// Outputs that the measure is made of.
             pub fn sources(&self) -> Vec<OutputSource> {
                 match self {
@@ -682,6 +693,11 @@ trait References {
         Vec::new()
     }
 
+    /// Elastic joint or bushing that it names, or the direction in one.
+    fn elastic(&self) -> (Option<ElasticId>, Option<ElasticDirection>) {
+        (None, None)
+    }
+
     /// Outputs that it names.
     fn outputs(&self) -> Vec<OutputSource> {
         Vec::new()
@@ -721,6 +737,10 @@ impl References for ElasticId {
     fn bodies(&self, model: &Model) -> Vec<BodyId> {
         let force = model.elements[self.0.0].kind.force(model);
         force.map_or_else(Vec::new, |force| force.acts_on.bodies(model).to_vec())
+    }
+
+    fn elastic(&self) -> (Option<ElasticId>, Option<ElasticDirection>) {
+        (Some(*self), None)
     }
 }
 
@@ -808,7 +828,11 @@ impl References for Option<DriverId> {}
 impl References for Vec<DriverId> {}
 impl References for Option<Vec<DriverId>> {}
 impl References for JacobianValue {}
-impl References for ElasticDirection {}
+impl References for ElasticDirection {
+    fn elastic(&self) -> (Option<ElasticId>, Option<ElasticDirection>) {
+        (None, Some(*self))
+    }
+}
 
 /// Values at which a measure without kinks has none.
 const SMOOTH: &[f64] = &[];

@@ -191,7 +191,7 @@ struct Place {
     /// True if the cores are segments that cross, and the distance is the way out of each other within their plane.
     cross: bool,
     of_features: Option<Direction>,
-    /// Where a segment is nearest to a circle.
+    /// Place on a segment that is nearest to a circle.
     on_segment: Option<PlaceOnSegment>,
 }
 

@@ -74,7 +74,7 @@ impl Checker<'_> {
 
     /// HP0250: the deflection of an elastic joint in a direction in which it is rigid.
     fn check_deflection(&mut self, kind: &MeasureKind, here: Here) {
-        let MeasureKind::Deflection { force: ElasticId(element), direction } = kind else { return };
+        let Some((ElasticId(element), direction)) = kind.elastic() else { return };
         let Element { name, kind, .. } = &self.model.elements[element.0];
         let Some(Properties { acts_on: ActsOn::Joint(joint), .. }) = kind.force(&self.model) else { return };
         let joint = &self.model.joints[joint.0];
