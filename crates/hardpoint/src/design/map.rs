@@ -20,8 +20,7 @@ use crate::law::Law;
 use crate::model::element::ActsOn;
 use crate::model::{
     BodyId, Change, DesignVariable, Direction, Driver, DriverId, ElementId, HardpointId, Joint, JointId,
-    Length, Measure, Model, NumberId, PointId, Shape, ShapeKind, SharedModel, Source, Target,
-    VariableId,
+    Length, Measure, Model, NumberId, PointId, Shape, ShapeKind, SharedModel, Source, Target, VariableId,
 };
 use crate::number::{self, Dual, Real};
 use crate::space::{Mat3, Pose, Twist, Vec3};
