@@ -90,7 +90,7 @@ describe('forces of the press', () => {
     const before = Number(await row('A').nth(2).innerText())
     const field = page.getByTestId('variable-counterweight').getByTestId('change-value')
     await page.getByTestId('tab-variables').click()
-    await field.fill('20')
+    await field.fill('+20')
     await field.press('Enter')
     await page.getByTestId('tab-loads').click()
     await expect.poll(async () => Number(await row('A').nth(2).innerText())).toBeGreaterThan(before)
