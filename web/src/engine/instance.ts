@@ -16,12 +16,10 @@ export async function instantiate(
   module: WebAssembly.Module,
   onProgress: (progress: ProgressReply) => void,
 ): Promise<Ask> {
-  let why = ''
   const text = (place: number, length: number) =>
     new TextDecoder().decode(new Uint8Array(exports.memory.buffer, place, length))
   const page = {
     tell: (place: number, length: number) => onProgress(JSON.parse(text(place, length))),
-    panicked: (place: number, length: number) => (why = text(place, length)),
   }
   const { exports: found } = await WebAssembly.instantiate(module, { page })
   const exports = found as unknown as Exports
@@ -33,7 +31,7 @@ export async function instantiate(
       const length = exports.answer()
       return exports.memory.buffer.slice(exports.answered(), exports.answered() + length) as ArrayBuffer
     } catch (error) {
-      throw new Error(why || String(error))
+      throw new Error(String(error))
     }
   }
 }
