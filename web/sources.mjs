@@ -1,5 +1,5 @@
-// Digest of what the engine in the page is built from: the code of its crates without comments, tests and spaces, and
-// the versions of its dependencies. `web/build` stores it beside the engine, and a test compares the two.
+// Digest of what the engine in the page is built from: the code of its crates without comments, tests and spaces, the
+// versions of its dependencies, and the commands. `web/build` stores it beside the engine, and a test compares the two.
 import { createHash } from 'node:crypto'
 import { readdirSync, readFileSync } from 'node:fs'
 import { join } from 'node:path'
@@ -56,7 +56,7 @@ function sources(folder) {
 /** Digest of all sources of the engine. */
 export function digest() {
   const hash = createHash('sha256')
-  const manifests = ['web/engine/Cargo.toml', 'web/engine/Cargo.lock']
+  const manifests = ['web/engine/Cargo.toml', 'web/engine/Cargo.lock', 'web/build']
   const folders = ['web/engine/src', 'web/engine/web-time/src']
   for (const name of crates('web/engine/Cargo.toml')) {
     manifests.push(`crates/${name}/Cargo.toml`)

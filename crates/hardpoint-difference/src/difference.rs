@@ -10,12 +10,12 @@ use hardpoint::space::Vec3;
 /// agrees to this at some step. In a well-conditioned mechanism central differences reach about (machine epsilon)^(2/3)
 /// = 4e-11 at best; accelerations near a limit position lose four digits. Where the differences themselves scatter by
 /// more than this, because of truncation or round-off, their spread is allowed in addition.
-pub const PASS: f64 = 1e-6;
+const PASS: f64 = 1e-6;
 
 /// Tolerance of one-sided differences. Truncation grows with the step itself, so that they reach (machine
 /// epsilon)^(1/2) = 1.5e-8 at best: 400 times more than central differences. The tolerance is larger by the same
 /// factor.
-pub const PASS_ONE_SIDED: f64 = 4e-4;
+const PASS_ONE_SIDED: f64 = 4e-4;
 
 /// Pair of designs of a difference quotient.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

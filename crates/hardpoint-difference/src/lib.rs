@@ -12,7 +12,5 @@ mod difference;
 mod magnitude;
 
 pub use comparison::{Comparison, StepError, UndecidedOutputs};
-pub use difference::{
-    Difference, DifferenceScheme, PASS, PASS_ONE_SIDED, finite_differences, finite_differences_each,
-};
+pub use difference::{Difference, DifferenceScheme, finite_differences, finite_differences_each};
 pub use magnitude::Magnitude;

@@ -49,10 +49,8 @@ pub(crate) fn start_at_rest(one: &mut Stepper<'_>, t: f64) -> Result<(), Box<Sto
 
 /// Solves the design configuration, then moves on to the first output time.
 pub(crate) fn start(one: &mut Stepper<'_>, t: f64) -> Result<(), Box<Stop>> {
-    if let Some(ramp) = start_on_ramp(one, t)? {
-        walk(one, ramp, 1.0)?;
-    }
-    one.start_on_laws(t, false)?;
+    let ramp = start_on_ramp(one, t)?;
+    start_from_ramp(one, ramp, t)?;
     count(one);
     Ok(())
 }
@@ -72,6 +70,14 @@ pub(super) fn start_on_ramp(one: &mut Stepper<'_>, t: f64) -> Result<Option<Path
     let ramp = Path::Line { at: t };
     one.start_on(ramp, 0.0, false)?;
     Ok(Some(ramp))
+}
+
+/// Moves on along that path to the first output time, and starts on the laws.
+pub(super) fn start_from_ramp(one: &mut Stepper<'_>, ramp: Option<Path>, t: f64) -> Result<(), Box<Stop>> {
+    if let Some(ramp) = ramp {
+        walk(one, ramp, 1.0)?;
+    }
+    one.start_on_laws(t, false)
 }
 
 /// Moves on to the output time t.

@@ -13,11 +13,11 @@ use crate::blocks::{AlignedLanes, Blocks, ResultBlock, lanes_of, zeros};
 use crate::model::{BodyId, VariableId};
 use crate::number::each;
 
-use super::advance::{laws_are_resolved, start_on_ramp};
+use super::advance::{laws_are_resolved, start_from_ramp, start_on_ramp};
 use super::guard::{StepGuard, Steps};
 use super::kinematics::QUADRATIC;
 use super::lookahead::PART_OF_WAY;
-use super::mechanism::Mechanism;
+use super::mechanism::{AcceptedPosition, Mechanism};
 use super::path::Path;
 use super::path_step::TRUST_FLOOR;
 use super::predictor::{NODES, ORDERS, Weights};
@@ -48,8 +48,10 @@ struct Drive {
 
 /// Solver of a batch of designs.
 pub(crate) struct DesignBatch<'m> {
-    /// The nominal design, in the design configuration, with the determinants there.
+    /// The nominal design.
     nominal: Mechanism<'m>,
+    /// Its position in the design configuration, with the determinants there.
+    start: AcceptedPosition,
     determinants: Vec<f64>,
     /// Motion of the drivers to each position: those of the ramp, of which there are this many, then the output times,
     /// up to the first interval in which the laws are not smooth.
@@ -96,28 +98,41 @@ pub(crate) struct BatchResults<'f> {
 }
 
 impl<'m> DesignBatch<'m> {
-    /// Solver by these programs, of designs like the nominal one, which is at its first output time. Returns `None` if
-    /// there is no program. If `keeps` is true, the results of all output times are stored.
-    pub fn new(mut started: Stepper<'m>, programs: ProgramOf<'m>, keeps: bool) -> Option<Self> {
-        let (on_laws, drivers_on_laws) = course(&mut started);
-        let started = started.mechanism;
-        let mut nominal = Stepper::new(started.model, &started.topology, started.parts.clone());
-        let (mut course, mut drivers) = ramp(&mut nominal, *started.model.times.first()?)?;
-        let on_ramp = course.len();
-        course.extend(on_laws);
-        drivers.extend(drivers_on_laws);
+    /// Solver by these programs, of designs like the nominal one, which is not started yet. Returns `None` if there is
+    /// no program, or if the nominal design has another branch at its first output time than in the design
+    /// configuration. If `keeps` is true, the results of all output times are stored.
+    pub fn new(mut nominal: Stepper<'m>, programs: ProgramOf<'m>, keeps: bool) -> Option<Self> {
+        let t = *nominal.mechanism.model.times.first()?;
         let first = Tape::new(programs(MOST_CORRECTIONS)?);
-        if !(first.is_on(&started.branch) && first.is_on(&nominal.mechanism.branch)) {
+        let path = start_on_ramp(&mut nominal, t).ok()?;
+        let (mut course, mut drivers) = match path {
+            Some(path) => ramp(&mut nominal, path),
+            None => {
+                start_from_ramp(&mut nominal, None, t).ok()?;
+                Default::default()
+            }
+        };
+        let start = nominal.mechanism.saved.clone();
+        let determinants: Vec<f64> = nominal.guard.determinants().collect();
+        let is_drawn_on_branch = first.is_on(&nominal.mechanism.branch);
+        if path.is_some() {
+            start_from_ramp(&mut nominal, path, t).ok()?;
+        }
+        if !(is_drawn_on_branch && first.is_on(&nominal.mechanism.branch)) {
             return None;
         }
+        let on_ramp = course.len();
+        let (on_laws, drivers_on_laws) = course_of_laws(&mut nominal);
+        course.extend(on_laws);
+        drivers.extend(drivers_on_laws);
         let channels = first.channels().len();
         let derivatives = vec![AlignedLanes::default(); first.sizes()[1]];
         let mut tapes = [const { None }; MOST_CORRECTIONS];
         tapes[MOST_CORRECTIONS - 1] = Some((first, false));
-        let determinants: Vec<f64> = nominal.guard.determinants().collect();
         let guard = StepGuard::new(determinants.len(), 0);
         Some(Self {
             nominal: nominal.mechanism,
+            start,
             determinants,
             course,
             on_ramp,
@@ -138,6 +153,11 @@ impl<'m> DesignBatch<'m> {
             derivatives,
             keeps,
         })
+    }
+
+    /// True if the motion does not begin in the design configuration.
+    pub fn begins_elsewhere(&self) -> bool {
+        self.on_ramp > 0
     }
 
     /// Moves the results of one design to its motion.
@@ -214,9 +234,8 @@ impl<'m> DesignBatch<'m> {
 
     /// Starts all designs in the configuration of the nominal one.
     fn start(&mut self) {
-        let saved = &self.nominal.saved;
         for n in 0..self.known.len() {
-            let x = self.tape().channels()[n].saved(&saved.q, &saved.balls);
+            let x = self.tape().channels()[n].saved(&self.start.q, &self.start.balls);
             // q of the nominal design, in every lane
             self.known[n][0] = [x; LANES];
         }
@@ -350,7 +369,7 @@ impl Step for DesignStep<'_, '_> {
 
 /// Values of the drivers, up to the first interval that the output times do not resolve, and none if a singular
 /// position is near the start; value, speed and acceleration of each driver at every output time.
-fn course(nominal: &mut Stepper<'_>) -> (Vec<Drive>, Vec<[f64; ORDERS]>) {
+fn course_of_laws(nominal: &mut Stepper<'_>) -> (Vec<Drive>, Vec<[f64; ORDERS]>) {
     let (mut course, mut drivers) = (Vec::new(), Vec::new());
     for (k, &t) in nominal.mechanism.model.times.iter().enumerate() {
         let h = t - nominal.mechanism.saved.time;
@@ -370,11 +389,10 @@ fn course(nominal: &mut Stepper<'_>) -> (Vec<Drive>, Vec<[f64; ORDERS]>) {
     (course, drivers)
 }
 
-/// The way of the nominal design from the design configuration, where it is left, to the first output time: values of
-/// the drivers in even steps, with their rates per ramp. Empty if the drivers begin at zero.
-fn ramp(nominal: &mut Stepper<'_>, t: f64) -> Option<(Vec<Drive>, Vec<[f64; ORDERS]>)> {
+/// The path of the nominal design from the design configuration, where it is, to the first output time: values of the
+/// drivers in even steps, with their rates per ramp.
+fn ramp(nominal: &mut Stepper<'_>, path: Path) -> (Vec<Drive>, Vec<[f64; ORDERS]>) {
     let (mut course, mut drivers) = (Vec::new(), Vec::new());
-    let Some(path) = start_on_ramp(nominal, t).ok()? else { return Some((course, drivers)) };
     nominal.examine(path);
     let Stepper { mechanism, lookahead, .. } = nominal;
     lookahead.measure_travel(mechanism, path, 1.0);
@@ -388,5 +406,5 @@ fn ramp(nominal: &mut Stepper<'_>, t: f64) -> Option<(Vec<Drive>, Vec<[f64; ORDE
         course.push(Drive { t: part, h: if j == 0 { 0.0 } else { 1.0 / steps }, fastest });
         drivers.extend(ends.clone().map(|to| [to * part, to, 0.0]));
     }
-    Some((course, drivers))
+    (course, drivers)
 }

@@ -569,10 +569,15 @@ impl<'m> Analysis<'m> {
 
     /// The nominal design where its motion begins.
     pub(super) fn started(&self) -> Option<Stepper<'_>> {
-        let PreparedDesign { geometry, laws, .. } = self.design(&[]);
-        let parts = PlanGeometry::same(self.solved_model(), &self.topology, &geometry, &laws);
-        let mut one = Stepper::new(self.solved_model(), &self.topology, parts);
+        let mut one = self.nominal();
         advance::start(&mut one, *self.model().times.first()?).ok()?;
         Some(one)
+    }
+
+    /// Solver of the nominal design, which is not started.
+    pub(super) fn nominal(&self) -> Stepper<'_> {
+        let PreparedDesign { geometry, laws, .. } = self.design(&[]);
+        let parts = PlanGeometry::same(self.solved_model(), &self.topology, &geometry, &laws);
+        Stepper::new(self.solved_model(), &self.topology, parts)
     }
 }

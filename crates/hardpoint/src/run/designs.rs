@@ -199,14 +199,10 @@ impl Analysis<'_> {
             };
             self.program(purpose)
         };
-        let started = self.started()?;
+        let batch = DesignBatch::new(self.nominal(), Box::new(program), keeps)?;
         // Turns of angles are counted over the output times of a batch, and not on the way to the first of them.
-        let begins_elsewhere = started.mechanism.saved.drivers.iter().any(|f| f[0] != 0.0);
         let counts =
             || PathAngles::of(self.design_map(), self.topology(), &self.model().whole(&[]), true).is_some();
-        if begins_elsewhere && counts() {
-            return None;
-        }
-        DesignBatch::new(started, Box::new(program), keeps)
+        (!batch.begins_elsewhere() || !counts()).then_some(batch)
     }
 }
