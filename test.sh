@@ -87,6 +87,15 @@ if ! wait $prepared; then
     exit 1
 fi
 
+# The page's tests wait for a browser most of the time: they run beside what follows, and are shown at the end.
+phase "compiling the Rust tests"
+cargo test --release --workspace --no-run --quiet
+set -m
+(cd web && npm test) > target/page.log 2>&1 &
+page=$!
+set +m
+trap 'kill -- -$page 2>/dev/null || true' EXIT
+
 phase "Rust tests"
 .ci/rust-tests --release --workspace
 
@@ -101,6 +110,10 @@ PATH="$work/bin:/usr/bin:/bin" pip "$wheel[test]"
 PATH="$work/bin:/usr/bin:/bin" HARDPOINT="$PWD/target/release/hardpoint" "$python" -m pytest -q -p no:cacheprovider python/tests
 
 phase "the page"
-(cd web && npm test)
+if ! wait $page; then
+    cat target/page.log
+    exit 1
+fi
+cat target/page.log
 
 phase "all passed"
