@@ -1,9 +1,12 @@
-//! Distinct optima of several searches.
+//! Best of several searches, and their distinct optima.
 
 use hardpoint::model::{Model, OptimizationSettings};
 
-use super::{KEPT, Optimization, Status, is_as_good_in_own_assembly};
+use super::assessment::{AS_GOOD, LIMIT_KEPT};
+use super::result::{Optimization, SearchResult, Status};
 
+/// An optimum of another assembly or sense must be better than those of the model's own by this fraction.
+const NO_WORSE: f64 = 1e-6;
 /// Optima in the same assembly and sense are the same if no variable differs by more than this fraction of its bounds:
 /// an optimality residual of 1e-6 leaves less than that wherever the curvature of the goals is of order one.
 const SAME: f64 = 1e-4;
@@ -35,7 +38,7 @@ impl Optimization {
         };
         let kept = |k: &usize| {
             let search = &self.searches[*k];
-            let found = search.found.as_ref().filter(|found| found.violation <= KEPT);
+            let found = search.found.as_ref().filter(|found| found.violation <= LIMIT_KEPT);
             found.filter(|_| search.status == Status::Optimal)
         };
         let mut ends: Vec<(usize, f64)> =
@@ -57,4 +60,49 @@ impl Optimization {
         }
         optima
     }
+}
+
+/// Index of the best search.
+pub(super) fn best(searches: &[SearchResult]) -> Option<usize> {
+    let found = |k: &usize| searches[*k].found.as_ref();
+    let rank = |k: &usize| {
+        let assessment = found(k).expect("only those that found something are ranked");
+        let kept = assessment.violation <= LIMIT_KEPT;
+        let objective = match searches[*k].status {
+            // Objectives without effects differ by round-off.
+            Status::NoEffect => 0.0,
+            Status::Optimal
+            | Status::Stuck
+            | Status::LimitsNotKept
+            | Status::IterationLimit
+            | Status::Interrupted
+            | Status::NoStart => assessment.objective,
+        };
+        (!kept, if kept { objective } else { assessment.violation })
+    };
+    let order = |a: &usize, b: &usize| {
+        let ([a, b], [x, y]) = ([rank(a).0, rank(b).0], [rank(a).1, rank(b).1]);
+        a.cmp(&b).then(x.total_cmp(&y))
+    };
+    let least = (0..searches.len()).filter(|k| found(k).is_some()).min_by(order)?;
+    let (exceeds, value) = rank(&least);
+    let as_good = |k: &usize| {
+        let same = |(e, v): (bool, f64)| e == exceeds && v - value <= AS_GOOD * value.abs();
+        found(k).is_some() && same(rank(k))
+    };
+    let residual = |k: &usize| searches[*k].optimality.residual;
+    let best = (0..searches.len()).filter(as_good).min_by(|a, b| residual(a).total_cmp(&residual(b)))?;
+    let own = (0..searches.len()).filter(|k| found(k).is_some_and(|f| f.violation <= LIMIT_KEPT));
+    let own = own.filter(|k| is_as_good_in_own_assembly(searches, *k, best));
+    Some(own.min_by(|a, b| residual(a).total_cmp(&residual(b))).unwrap_or(best))
+}
+
+/// True if a search in the model's own assembly and sense ended no worse than one elsewhere: a coupler that is turned
+/// over, or a mirror image, often moves like another design of the model, and is then not worth another assembly.
+fn is_as_good_in_own_assembly(searches: &[SearchResult], own: usize, other: usize) -> bool {
+    let [own, other] = [own, other].map(|k| &searches[k]);
+    let objective = |search: &SearchResult| search.found.as_ref().map_or(f64::INFINITY, |f| f.objective);
+    let (a, b) = (objective(own), objective(other));
+    let is_equal = own.optimality.met && other.optimality.met || a - b <= NO_WORSE * b.abs();
+    own.variant == 0 && other.variant != 0 && own.status == other.status && is_equal
 }

@@ -8,14 +8,11 @@
 //! distance `t` of an extremum from its target sum to `2 t`. The multipliers are
 //! found by non-negative least squares over the active constraints, independent of the solver.
 
-use super::problem::{LimitRow, Point, Problem, Rows};
+use super::problem::{LimitRow, MET, Point, Problem, Rows};
 use hardpoint_search::quadratic::non_negative;
 
 /// Distance from its end, as a fraction of its scale, below which a constraint is active.
 pub(crate) const BINDS: f64 = 1e-7;
-/// Misfits below this fraction of their change over the bounds of the most influential variable are round-off: motions
-/// are solved to about 1e-14.
-pub(crate) const MET: f64 = 1e-12;
 /// Goals that are not squares, of a value below [`MET`] of the gradient, vanish to round-off. Their minimum is there if
 /// the gradient is below the square root of that: a step to zero gradient changes the value by round-off,
 /// `f - f* = (grad f)^2 / 2 f''`, with a second derivative of the size of the gradient.

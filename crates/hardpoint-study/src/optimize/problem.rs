@@ -10,6 +10,10 @@ use hardpoint::run::{MarginDerivatives, MetricParts, MetricUse, Solution, misfit
 use hardpoint::sensitivity::Admissibility;
 use hardpoint_difference::Magnitude;
 
+/// Misfits below this fraction of their change over the bounds of the most influential variable are round-off: motions
+/// are solved to about 1e-14.
+pub(crate) const MET: f64 = 1e-12;
+
 /// Goals and limits of an optimisation, and the motions that they are evaluated in.
 #[derive(Clone, Debug)]
 pub(crate) struct Problem<'m> {
@@ -200,7 +204,7 @@ impl Point {
         let size = rows().flat_map(|rows| &rows.values).fold(0.0, |most: f64, value| most.max(value.abs()));
         let mut effects = vec![0.0_f64; problem.bounds.len()];
         for share in &self.shares {
-            let round_off = share.round_off.max(super::MET * size);
+            let round_off = share.round_off.max(MET * size);
             let extrema = self.extrema.iter().filter(|e| share.misfits.contains(&e.misfit));
             let candidates = self.peaks[share.peaks.clone()].iter().chain(extrema.map(|e| &e.rows));
             let own = [&self.misfits.d[share.misfits.clone()], &self.plain.d[share.plain.clone()]];

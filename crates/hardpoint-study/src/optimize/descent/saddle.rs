@@ -4,8 +4,10 @@
 //! grad f = 0 along these variables,    u . H u < 0    with H their second derivatives, by differences of gradients
 //! ```
 
-use super::optimality::BINDS;
-use super::{Descent, Iteration, SearchResult};
+use super::Descent;
+use crate::optimize::optimality::BINDS;
+use crate::optimize::problem::Point;
+use crate::optimize::result::{Iteration, SearchResult};
 
 /// Change, as a fraction of the bounds, below which a search has not moved a variable.
 const UNMOVED: f64 = 1e-9;
@@ -67,7 +69,7 @@ impl Descent<'_> {
     fn most_negative(&self, at: &[f64], variables: &[usize]) -> Option<Vec<f64>> {
         let gradient = |at: &[f64]| {
             let by_bounds = |(g, [low, high]): (f64, &[f64; 2])| g * (high - low);
-            let of = |point: &super::Point| -> Vec<f64> {
+            let of = |point: &Point| -> Vec<f64> {
                 point.gradient(at.len()).into_iter().zip(&self.problem.bounds).map(by_bounds).collect()
             };
             self.memory.at(at, |found| found.as_ref().ok().map(of))

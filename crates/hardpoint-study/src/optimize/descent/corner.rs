@@ -11,8 +11,10 @@
 
 use hardpoint_search::quadratic::non_negative;
 
-use super::optimality::{Optimality, active_constraints, by_parts};
-use super::{AS_GOOD, Descent, OPTIMAL, start};
+use super::{Descent, OPTIMAL};
+use crate::optimize::assessment::AS_GOOD;
+use crate::optimize::optimality::{Optimality, active_constraints, by_parts};
+use crate::optimize::starts::start;
 
 /// Radii around a design, as fractions of the bounds: a search without gradients to follow ends at about such a
 /// distance from the corner.
