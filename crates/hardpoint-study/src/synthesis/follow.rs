@@ -5,8 +5,8 @@ use hardpoint::model::{BodyId, Model};
 use hardpoint::motion::BodyState;
 use hardpoint::space::Vec3;
 
-use super::Answer;
 use super::plane::Complex;
+use super::result::Answer;
 
 /// Largest differences between the motion of a model and the poses of an answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
