@@ -12,8 +12,11 @@
 use hardpoint::linalg::semidefinite;
 use hardpoint::model::{AllocationRule, AllocationSettings};
 
+use super::data::StudyData;
+use super::deviations::Block;
 use super::monte_carlo::MonteCarlo;
-use super::{Study, ToleranceResult};
+use super::spread::MetricSpread;
+use super::yields::LimitYield;
 use hardpoint_search::dot;
 
 /// Maximum factor by which a tolerance is loosened: beyond it no limit constrains the tolerance, and the derivatives
@@ -39,8 +42,9 @@ pub struct Allocation {
     pub rule: AllocationRule,
     /// Results of the tolerances that have a cost.
     pub tolerances: Vec<AllocatedTolerance>,
-    /// Lagrange multiplier of each limit, in the order of [`ToleranceResult::limits`]: the cost saved per SI unit of
-    /// additional room; 0 if the limit is inactive.
+    /// Lagrange multiplier of each limit, in the order of
+    /// [`ToleranceResult::limits`](super::ToleranceResult::limits): the cost saved per SI unit of additional room; 0 if
+    /// the limit is inactive.
     pub worth: Vec<f64>,
     /// Sum of `cost / reach` before and after.
     pub cost: [f64; 2],
@@ -70,11 +74,13 @@ pub enum AllocationError {
     NoCosts,
     /// No limits are given.
     NoLimits,
-    /// The nominal design violates this limit (index in [`ToleranceResult::limits`]).
+    /// The nominal design violates this limit (index in [`ToleranceResult::limits`](super::ToleranceResult::limits)).
     NominalExceeds(usize),
-    /// The metric of this limit (index in [`ToleranceResult::limits`]) has no derivatives.
+    /// The metric of this limit (index in [`ToleranceResult::limits`](super::ToleranceResult::limits)) has no
+    /// derivatives.
     NoDerivatives(usize),
-    /// Tolerances without a cost exhaust the room of this limit (index in [`ToleranceResult::limits`]).
+    /// Tolerances without a cost exhaust the room of this limit (index in
+    /// [`ToleranceResult::limits`](super::ToleranceResult::limits)).
     Fixed(usize),
 }
 
@@ -91,9 +97,10 @@ struct Room {
 
 /// Allocates the tolerances.
 pub(super) fn allocate(
-    study: &Study<'_>,
+    study: &StudyData<'_>,
     settings: AllocationSettings,
-    found: &ToleranceResult,
+    metrics: &[MetricSpread],
+    limits: &[LimitYield],
 ) -> Allocation {
     let tolerances = &study.settings.tolerances;
     let blocks = &study.deviations.blocks;
@@ -109,13 +116,13 @@ pub(super) fn allocate(
     let mut allocation = Allocation {
         rule: settings.rule,
         tolerances: Vec::new(),
-        worth: vec![0.0; found.limits.len()],
+        worth: vec![0.0; limits.len()],
         cost: [costs.iter().sum(), 0.0],
         residual: f64::NAN,
         error: None,
         sampled: None,
     };
-    let rooms = rooms(study, settings.rule, found);
+    let rooms = rooms(study, settings.rule, metrics, limits);
     let problem =
         Problem { costs: &costs, free: &free, rooms: &rooms, blocks: blocks.len(), rule: settings.rule };
     allocation.error = match () {
@@ -162,13 +169,18 @@ impl Allocation {
 }
 
 /// Room of every limit; a limit with two ends uses the nearer one.
-fn rooms(study: &Study<'_>, rule: AllocationRule, found: &ToleranceResult) -> Vec<Room> {
+fn rooms(
+    study: &StudyData<'_>,
+    rule: AllocationRule,
+    metrics: &[MetricSpread],
+    limits: &[LimitYield],
+) -> Vec<Room> {
     let deviations = study.deviations;
-    let room = |(k, limit): (usize, &super::LimitYield)| {
-        let (settings, of) = (&study.settings.limits[limit.limit], &found.metrics[limit.spread]);
+    let room = |(k, limit): (usize, &LimitYield)| {
+        let (settings, of) = (&study.settings.limits[limit.limit], &metrics[limit.spread]);
         let above = settings.most.map_or(f64::INFINITY, |most| most - of.nominal);
         let below = settings.least.map_or(f64::INFINITY, |least| of.nominal - least);
-        let part = |b: &super::deviations::Block| {
+        let part = |b: &Block| {
             let mut g = vec![0.0; of.d.len()];
             g[b.range()].copy_from_slice(&of.d[b.range()]);
             deviations.whitened(&g)
@@ -181,13 +193,13 @@ fn rooms(study: &Study<'_>, rule: AllocationRule, found: &ToleranceResult) -> Ve
                 q = parts.iter().map(|a| parts.iter().map(|b| entry(a, b)).collect()).collect();
             }
             AllocationRule::Worst => {
-                let norm = |b: &super::deviations::Block| dot(&of.d[b.range()], &of.d[b.range()]).sqrt();
+                let norm = |b: &Block| dot(&of.d[b.range()], &of.d[b.range()]).sqrt();
                 w = deviations.blocks.iter().map(|b| b.reach * norm(b)).collect();
             }
         }
         Room { limit: k, room: above.min(below), q, w }
     };
-    found.limits.iter().enumerate().map(room).collect()
+    limits.iter().enumerate().map(room).collect()
 }
 
 /// `minimise sum c / x` over the free tolerances x, as fractions of their original reach.

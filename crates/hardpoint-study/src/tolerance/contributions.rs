@@ -1,12 +1,9 @@
 //! Contribution of each variable to the variance of a metric, from the model of its spread.
 
-use hardpoint::model::{Model, ToleranceSettings};
-
-use super::{NONLINEAR, ToleranceResult};
+use super::monte_carlo::SampledMetric;
+use super::spread::MetricSpread;
 use hardpoint_search::dot;
 
-/// Fraction of failed designs above which failures are a significant part of the spread.
-const FAILING: f64 = 1e-3;
 /// Minimum number of sampled designs for contributions: fewer have errors of whole percents.
 const ENOUGH: usize = 1000;
 /// Groups of sampled designs with neighbouring deviations of a variable: minimum number of designs in each, and maximum
@@ -42,51 +39,28 @@ pub struct Contributions {
     pub together: Option<f64>,
 }
 
-impl ToleranceResult {
-    /// True if linear statistics of a metric are inaccurate, as indicated by second derivatives or by the sampled
-    /// designs.
-    pub fn is_nonlinear(&self, metric: usize) -> bool {
-        self.metrics[metric].is_nonlinear() || self.differs_from_samples(metric) || self.fails_often()
-    }
-
-    /// True if the standard deviation of the sampled designs differs significantly from the linear one.
-    pub fn differs_from_samples(&self, metric: usize) -> bool {
-        let Some(samples) = self.sampled.as_ref().map(|s| &s.metrics[metric]) else { return false };
-        let (linear, [sigma, _]) = (self.metrics[metric].sigma, samples.sigma);
-        samples.differs_from(linear) && (linear - sigma).abs() > NONLINEAR * sigma
-    }
-
-    /// True if a significant part of the designs does not reach the end.
-    pub fn fails_often(&self) -> bool {
-        self.sampled.as_ref().is_some_and(|s| s.failed as f64 > FAILING * s.samples as f64)
-    }
-
-    pub(super) fn add_contributions(&mut self, model: &Model, settings: &ToleranceSettings) {
-        let deviations: Option<Vec<Vec<f64>>> = self.sampled.as_ref().map(|sampled| {
-            let deviation = self.deviations(model, settings);
-            (0..sampled.samples).map(deviation).collect()
-        });
-        let correlated = !settings.correlations.is_empty();
-        self.contributions = (0..self.metrics.len())
-            .map(|k| {
-                let of = &self.metrics[k];
-                let samples = self.sampled.as_ref().map(|s| &s.metrics[k]).filter(|d| d.known >= ENOUGH);
-                match (self.is_nonlinear(k), samples, &deviations, &of.second_shares) {
-                    (true, Some(samples), Some(deviations), _) if samples.sigma[0] > 0.0 => {
-                        let effect = |v: usize| main_effect(&samples.values, |n| deviations[n][v]);
-                        let shares: Vec<f64> = (0..of.d.len()).map(effect).collect();
-                        let rest = (1.0 - shares.iter().sum::<f64>()).max(0.0);
-                        let together = (!correlated).then_some(rest);
-                        Contributions { model: SpreadModel::Sampled, shares, together }
-                    }
-                    (true, _, _, Some(shares)) => {
-                        let shares = shares.clone();
-                        Contributions { model: SpreadModel::SecondOrder, shares, together: None }
-                    }
-                    _ => Contributions { shares: of.shares.clone(), ..Contributions::default() },
-                }
-            })
-            .collect();
+impl Contributions {
+    /// Contributions to the spread of a metric; `samples` are its sampled values, with the deviations of each design.
+    pub(super) fn of(
+        of: &MetricSpread,
+        is_nonlinear: bool,
+        is_correlated: bool,
+        samples: Option<(&SampledMetric, &[Vec<f64>])>,
+    ) -> Self {
+        let samples = samples.filter(|(samples, _)| samples.known >= ENOUGH && samples.sigma[0] > 0.0);
+        match (is_nonlinear, samples, &of.second_shares) {
+            (true, Some((samples, deviations)), _) => {
+                let effect = |v: usize| main_effect(&samples.values, |n| deviations[n][v]);
+                let shares: Vec<f64> = (0..of.d.len()).map(effect).collect();
+                let rest = (1.0 - shares.iter().sum::<f64>()).max(0.0);
+                let together = (!is_correlated).then_some(rest);
+                Self { model: SpreadModel::Sampled, shares, together }
+            }
+            (true, None, Some(shares)) => {
+                Self { model: SpreadModel::SecondOrder, shares: shares.clone(), together: None }
+            }
+            (true, None, None) | (false, ..) => Self { shares: of.shares.clone(), ..Self::default() },
+        }
     }
 }
 

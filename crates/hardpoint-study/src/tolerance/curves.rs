@@ -5,9 +5,10 @@ use std::collections::HashMap;
 use hardpoint::Run;
 use hardpoint::model::OutputSource;
 
+use super::data::StudyData;
+use super::deviations::SecondOrder;
 use super::pins::{Pins, SideChange};
 use super::worst::{Extreme, extreme};
-use super::{SecondOrder, Study};
 
 /// Maximum size of the second derivatives for bands, in bytes; with more variables or longer motions, bands are of
 /// first order.
@@ -62,7 +63,7 @@ impl CurveBands {
     }
 }
 
-impl Study<'_> {
+impl StudyData<'_> {
     /// Bands of all requested curves; stops early if `more` returns false. With the pins that change sides under load.
     pub(super) fn curves(&self, more: &(dyn Fn() -> bool + Sync)) -> (Vec<CurveBands>, Vec<SideChange>) {
         let (mut curves, mut changes) = (Vec::new(), Vec::new());

@@ -5,8 +5,31 @@ use crate::random::{design_stream, draw, moments};
 use hardpoint::linalg::semidefinite;
 use hardpoint::model::{Model, Scatter, ToleranceSettings, VariableId};
 
-use super::{SecondOrder, TolerancedVariable};
 use hardpoint_search::dot;
+
+/// Toleranced variable.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TolerancedVariable {
+    /// The variable.
+    pub variable: VariableId,
+    /// Index of its tolerance.
+    pub tolerance: usize,
+    /// Standard deviation of its deviation, m, rad or a plain number.
+    pub sigma: f64,
+    /// Kurtosis of its deviation: 3 if it is normal.
+    pub kurtosis: f64,
+}
+
+/// Moments to second order, in SI; 0 if they are round-off.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SecondOrder {
+    /// Mean minus nominal value.
+    pub shift: f64,
+    /// Standard deviation.
+    pub sigma: f64,
+    /// Standard deviation of the second-order part alone.
+    pub bend: f64,
+}
 
 /// Toleranced variables with their distributions.
 #[derive(Clone, Debug)]

@@ -13,19 +13,22 @@ use hardpoint::model::Dimension;
 use hardpoint::run::Solution;
 use hardpoint::run::{metric_numbers, place_of};
 
+use super::curves::CurveBands;
+use super::data::StudyData;
 use super::deviations::Deviations;
-use super::{CurveBands, MetricSpread, Study, ToleranceResult};
+use super::spread::MetricSpread;
+use super::yields::{LimitYield, Yield};
 
 /// Results of the Monte Carlo designs. SI.
 #[derive(Clone, Debug, Default)]
 pub struct MonteCarlo {
     /// Number of solved designs.
     pub samples: usize,
-    /// Results of the metrics, in the order of [`ToleranceResult::metrics`].
+    /// Results of the metrics, in the order of [`ToleranceResult::metrics`](super::ToleranceResult::metrics).
     pub metrics: Vec<SampledMetric>,
-    /// Results of the curves, in the order of [`ToleranceResult::curves`].
+    /// Results of the curves, in the order of [`ToleranceResult::curves`](super::ToleranceResult::curves).
     pub curves: Vec<SampledCurve>,
-    /// Yields of the limits, in the order of [`ToleranceResult::limits`].
+    /// Yields of the limits, in the order of [`ToleranceResult::limits`](super::ToleranceResult::limits).
     pub limits: Vec<Yield>,
     /// Yield of all limits together.
     pub all: Option<Yield>,
@@ -69,15 +72,6 @@ pub struct SampledCurve {
     pub greatest: Vec<f64>,
 }
 
-/// Yield: designs that satisfy a condition, of all.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Yield {
-    /// Number of designs that satisfy it.
-    pub kept: usize,
-    /// Number of all designs.
-    pub of: usize,
-}
-
 /// Designs that failed for the same reason.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FailureGroup {
@@ -91,18 +85,12 @@ pub struct FailureGroup {
     pub count: usize,
 }
 
-impl Yield {
-    /// Yield as a fraction.
-    pub fn part(self) -> f64 {
-        self.kept as f64 / self.of as f64
-    }
-
-    /// Standard error, computed with one more success and one more failure, since 0 of n does not mean never.
-    pub fn error(self) -> f64 {
-        let n = self.of as f64 + 2.0;
-        let part = (self.kept as f64 + 1.0) / n;
-        (part * (1.0 - part) / n).sqrt()
-    }
+/// Metrics, curves and limits of the sampled designs.
+#[derive(Clone, Copy)]
+pub(super) struct SampledQuantities<'r> {
+    pub metrics: &'r [MetricSpread],
+    pub curves: &'r [CurveBands],
+    pub limits: &'r [LimitYield],
 }
 
 /// Running mean and sum of squared deviations.
@@ -149,12 +137,12 @@ struct Block {
     cost: StudyCost,
 }
 
-impl Study<'_> {
+impl StudyData<'_> {
     /// Samples and solves the requested number of designs, or fewer if the caller ends the study.
     pub(super) fn sample(
         &self,
         deviations: &Deviations,
-        found: &ToleranceResult,
+        of: SampledQuantities<'_>,
         threads: NonZero<usize>,
         tell: &mut (dyn FnMut(Progress<'_>) -> ControlFlow<()> + Send),
         more: &(dyn Fn() -> bool + Sync),
@@ -162,10 +150,10 @@ impl Study<'_> {
         let (seed, settings) = (self.settings.seed, self.settings.samples);
         let design =
             |number: usize| deviations.design(self.model.variables.len(), &deviations.sample(seed, number));
-        let places: Vec<usize> = found.metrics.iter().map(|m| self.place(m)).collect();
+        let places: Vec<usize> = of.metrics.iter().map(|m| self.place(m)).collect();
         let see = |block: &mut Block, number: usize, motion: usize, solution: &Solution| {
-            block.metrics.resize(found.metrics.len(), Vec::new());
-            block.curves.resize(found.curves.len(), Vec::new());
+            block.metrics.resize(of.metrics.len(), Vec::new());
+            block.curves.resize(of.curves.len(), Vec::new());
             block.cost.motions += 1;
             block.cost.steps += solution.motion.len();
             let stop = solution.stop.as_ref();
@@ -177,19 +165,17 @@ impl Study<'_> {
                 None => metric_numbers(self.motions.model(motion), solution).collect(),
                 Some(_) => Vec::new(),
             };
-            for (k, of) in found.metrics.iter().enumerate().filter(|(_, of)| of.motion == motion) {
+            for (k, _) in of.metrics.iter().enumerate().filter(|(_, spread)| spread.motion == motion) {
                 let number = numbers.get(places[k]).copied().flatten();
                 block.metrics[k].push(number.unwrap_or(f64::NAN));
-                assert!(of.motion == motion);
             }
             if stop.is_none() {
-                let of_motion =
-                    found.curves.iter().zip(&mut block.curves).filter(|(c, _)| c.motion == motion);
+                let of_motion = of.curves.iter().zip(&mut block.curves).filter(|(c, _)| c.motion == motion);
                 of_motion.for_each(|(curve, to)| self.add_curve(curve, solution, to));
             }
         };
         let mut all = Block { metrics: vec![Vec::new(); places.len()], ..Block::default() };
-        all.curves = found.curves.iter().map(|c| vec![Growing::NONE; c.bands.len()]).collect();
+        all.curves = of.curves.iter().map(|c| vec![Growing::NONE; c.bands.len()]).collect();
         let mut samples = 0;
         let mut done = |SampleBlock { numbers, found: block }: SampleBlock<Block>| {
             samples = numbers.end;
@@ -203,7 +189,7 @@ impl Study<'_> {
         };
         let run = SampleRun { numbers: 0..settings, design: &design, threads, more };
         self.motions.sample(&run, &see, &mut done);
-        self.results(found, samples, all)
+        self.results(of, samples, all)
     }
 
     fn place(&self, of: &MetricSpread) -> usize {
@@ -226,10 +212,10 @@ impl Study<'_> {
         }
     }
 
-    fn results(&self, found: &ToleranceResult, samples: usize, all: Block) -> MonteCarlo {
-        let metrics = all.metrics.into_iter().zip(&found.metrics);
+    fn results(&self, of: SampledQuantities<'_>, samples: usize, all: Block) -> MonteCarlo {
+        let metrics = all.metrics.into_iter().zip(of.metrics);
         let metrics: Vec<SampledMetric> =
-            metrics.map(|(values, of)| SampledMetric::of(values, of.round_off)).collect();
+            metrics.map(|(values, spread)| SampledMetric::of(values, spread.round_off)).collect();
         let curve = |points: Vec<Growing>| SampledCurve {
             mean: points.iter().map(|p| p.mean).collect(),
             sigma: points.iter().map(|p| (p.squares / (p.n - 1.0)).sqrt()).collect(),
@@ -243,7 +229,7 @@ impl Study<'_> {
                 && limit.most.is_none_or(|most| x <= most)
                 && !x.is_nan()
         };
-        let limits = found.limits.iter().map(|limit| {
+        let limits = of.limits.iter().map(|limit| {
             let kept = metrics[limit.spread].values.iter().filter(|x| keeps(limit.limit, **x)).count();
             Yield { kept, of: samples }
         });
@@ -257,11 +243,10 @@ impl Study<'_> {
                 None => failures.push((reason, FailureGroup { motion, why, first: number, count: 1 })),
             }
         }
-        let whole = |k: &usize| {
-            !failed[*k] && found.limits.iter().all(|l| keeps(l.limit, metrics[l.spread].values[*k]))
-        };
-        let all_kept = (!found.limits.is_empty())
-            .then(|| Yield { kept: (0..samples).filter(whole).count(), of: samples });
+        let whole =
+            |k: &usize| !failed[*k] && of.limits.iter().all(|l| keeps(l.limit, metrics[l.spread].values[*k]));
+        let all_kept =
+            (!of.limits.is_empty()).then(|| Yield { kept: (0..samples).filter(whole).count(), of: samples });
         MonteCarlo {
             samples,
             curves: all.curves.into_iter().map(curve).collect(),

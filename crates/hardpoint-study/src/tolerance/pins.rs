@@ -10,8 +10,8 @@ use hardpoint::load::Loads;
 use hardpoint::model::{Change, Dimension, JointId, Model, VariableId};
 use hardpoint::space::Vec3;
 
-use super::Study;
-use super::deviations::Deviations;
+use super::data::StudyData;
+use super::deviations::{Block, Deviations};
 
 /// Forces below this fraction of the largest one of the model push a pin to no side: round-off of reactions.
 const NO_FORCE: f64 = 1e-9;
@@ -43,8 +43,8 @@ pub(super) struct Pins {
 
 impl Pins {
     /// Places in the motions of a study, for joints with play whose forces are known; `None` if there are none.
-    pub fn of(study: &Study<'_>, motion: usize) -> Option<Self> {
-        let Study { settings, deviations, .. } = *study;
+    pub fn of(study: &StudyData<'_>, motion: usize) -> Option<Self> {
+        let StudyData { settings, deviations, .. } = *study;
         let analysis = &study.motions.analyses()[motion];
         let model = analysis.model();
         if !model.has_loads() || settings.tolerances.iter().all(|t| t.play.is_none()) {
@@ -91,7 +91,7 @@ impl Pins {
     /// Change of an output with these derivatives at output time k, if every pin lies where the loads press it; `None`
     /// if that is not known of a pin that the output depends on.
     pub fn shift(&self, deviations: &Deviations, k: usize, g: &[f64]) -> Option<f64> {
-        let of_block = |(block, directions): (&super::deviations::Block, &Option<Vec<Option<Vec<f64>>>>)| {
+        let of_block = |(block, directions): (&Block, &Option<Vec<Option<Vec<f64>>>>)| {
             let g = &g[block.range()];
             let Some(directions) = directions.as_ref().filter(|_| g.iter().any(|g| *g != 0.0)) else {
                 return Some(0.0);
