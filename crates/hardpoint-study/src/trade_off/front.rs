@@ -1,8 +1,8 @@
 //! Points of a front, and where to look for the next.
 
 use super::functions::{Criticality, Scale, State};
+use super::result::{FrontPoint, ON_FRONT, TradeOff};
 use super::scalarization::{Curvatures, Reference, Scalarization, Solved};
-use super::{FrontPoint, ON_FRONT, TradeOff};
 use crate::optimize::{LIMIT_KEPT, Memory, assess, limit_scales};
 
 /// Range of a goal, relative to its change from the nominal design, below which it does not conflict with the others.
