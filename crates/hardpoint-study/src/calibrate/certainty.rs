@@ -1,7 +1,7 @@
 //! Accuracy of the fitted variables: covariance, and changes that cannot be identified.
 
-use super::BoundSide;
 use super::fit::{FitWorkspace, SearchResult, free, information};
+use super::parameter::BoundSide;
 use hardpoint_search::{dot, independent};
 
 /// A direction with a standard deviation of more natural steps than this (about the mechanism's size) is not reported.

@@ -7,19 +7,18 @@ use crate::recent::Recent;
 use crate::request::RequestError;
 use crate::sweep::quantile;
 use hardpoint::joint::Quantity;
-use hardpoint::measure::{Output, outputs};
-use hardpoint::model::{Dimension, DriverId, Model, OutputSource, VariableId};
+use hardpoint::measure::outputs;
+use hardpoint::model::{Dimension, DriverId, Model, OutputSource, Reading, VariableId};
 use hardpoint::run::Analysis;
 use hardpoint_difference::Magnitude;
 
 use hardpoint_search::{LeastSquares, bounded_least_squares, dot, singular};
 
-use super::posture::{ReachedPosture, read_outputs, solve_posture};
+use super::loss::Loss;
+use super::parameter::{BoundSide, FittedParameter};
+use super::posture::{ReachedPosture, UnreachedPosture, read_outputs, solve_posture};
 use super::prior::{PriorRows, parameters_of};
-use super::{
-    BoundSide, Calibration, Certainty, FittedParameter, FittedReading, Loss, NextReading, Reading, Request,
-    Status, UnreachedPosture, Validation,
-};
+use super::request::Request;
 
 /// Maximum change of a variable from the nominal design, in natural steps (each about the mechanism's size or a
 /// radian).
@@ -60,7 +59,7 @@ pub(super) struct FitWorkspace<'b> {
     pub parameters: Vec<FittedParameter>,
     /// Outputs with readings; others are not solved.
     outputs: Vec<OutputSource>,
-    left_out: Vec<FittedParameter>,
+    pub left_out: Vec<FittedParameter>,
     /// Drivers with a fitted offset, in the order of their variables in the models of the postures.
     pub offset_drivers: Vec<DriverId>,
     /// Natural step of each fitted parameter.
@@ -69,18 +68,44 @@ pub(super) struct FitWorkspace<'b> {
     bounds: Vec<[f64; 2]>,
     /// Rows of the prior knowledge.
     pub priors: PriorRows,
-    not_reached: Vec<UnreachedPosture>,
+    pub not_reached: Vec<UnreachedPosture>,
     /// Indices of the compared readings.
     pub compared: Vec<usize>,
     /// True if all readings have standard deviations.
     pub has_sigmas: bool,
-    nominal: Vec<Option<ReachedPosture>>,
+    pub nominal: Vec<Option<ReachedPosture>>,
     /// Sum of squares that round-off of the solved values leaves: a smaller one, or a smaller decrease of a sum, is
     /// none.
     round_off: f64,
     pub cost: RefCell<StudyCost>,
     /// Number of designs of the current iteration without residuals or without their derivatives.
     refused: Cell<usize>,
+}
+
+/// Status of a fit at its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Status {
+    /// No small change of the design improves the fit.
+    Found,
+    /// Better designs cannot be used: the mechanism does not assemble, stops before a posture, or cannot follow a
+    /// fitted variable there.
+    Stuck,
+    /// A parameter has left every sensible range: the readings do not determine it, or do not fit the mechanism.
+    Diverged,
+    /// The iteration limit was reached.
+    IterationLimit,
+    /// The caller ended the fit.
+    Interrupted,
+}
+
+impl Status {
+    /// True if the formula of the covariance, that of an optimum, is valid at the end.
+    pub(super) fn has_covariance(self) -> bool {
+        match self {
+            Self::Found | Self::IterationLimit | Self::Interrupted => true,
+            Self::Stuck | Self::Diverged => false,
+        }
+    }
 }
 
 /// State of a search.
@@ -97,7 +122,7 @@ pub(super) struct SearchResult {
     /// Estimated standard deviation of the residuals; 1 if standard deviations are given.
     pub scale: f64,
     pub objective: [f64; 2],
-    iterations: Vec<f64>,
+    pub iterations: Vec<f64>,
 }
 
 /// Residuals of the readings with their derivatives, and residuals of the priors.
@@ -151,7 +176,7 @@ impl<'b> FitWorkspace<'b> {
         }
     }
 
-    fn readings(&self) -> &'b [Reading] {
+    pub fn readings(&self) -> &'b [Reading] {
         &self.request.measured.readings
     }
 
@@ -284,7 +309,7 @@ impl<'b> FitWorkspace<'b> {
     }
 
     /// Bounds of a parameter, SI, if it has any and they are kept.
-    fn kept_bounds(&self, parameter: FittedParameter) -> Option<[f64; 2]> {
+    pub fn kept_bounds(&self, parameter: FittedParameter) -> Option<[f64; 2]> {
         match parameter {
             FittedParameter::Variable(v) => {
                 self.model.variables[v.0].bounds.filter(|_| self.request.keep_bounds)
@@ -365,7 +390,7 @@ impl<'b> FitWorkspace<'b> {
     }
 
     /// Unit of a reading's residual: its standard deviation, or one SI unit.
-    fn unit(&self, reading: &Reading) -> f64 {
+    pub fn unit(&self, reading: &Reading) -> f64 {
         reading.sigma.filter(|_| self.has_sigmas).unwrap_or(1.0)
     }
 
@@ -738,49 +763,6 @@ impl<'b> FitWorkspace<'b> {
         }
         let rows = recent.at(&z, || find(&z), Option::clone)?;
         Some((place(&z), rows))
-    }
-
-    /// Assembles the result.
-    pub fn calibration(
-        self,
-        search: SearchResult,
-        certainty: Certainty,
-        next: Vec<NextReading>,
-        validation: Option<Validation>,
-        outputs: Vec<Output>,
-    ) -> Calibration {
-        let mut fitted = vec![None; self.readings().len()];
-        for (row, k) in self.compared.iter().enumerate() {
-            let reading = &self.readings()[*k];
-            let sigma = self.unit(reading);
-            let nominal =
-                self.nominal[reading.posture].as_ref().map_or(f64::NAN, |s| s.value(reading.output));
-            fitted[*k] = Some(FittedReading {
-                before: nominal,
-                value: reading.value + sigma * search.at.r[row],
-                residual: search.at.r[row] / search.scale,
-                weight: search.weights[row],
-            });
-        }
-        let mut design = self.design(&search.x);
-        design.truncate(self.model.variables.len());
-        Calibration {
-            status: search.status,
-            design,
-            estimates: search.x.iter().zip(&self.steps).map(|(x, step)| x * step).collect(),
-            bounds: self.parameters.iter().map(|p| self.kept_bounds(*p)).collect(),
-            parameters: self.parameters,
-            validation,
-            left_out: self.left_out,
-            outputs,
-            fitted,
-            not_reached: self.not_reached,
-            objective: search.objective,
-            iterations: search.iterations,
-            certainty,
-            next,
-            cost: self.cost.into_inner(),
-        }
     }
 }
 

@@ -4,10 +4,10 @@ use hardpoint::measure::outputs;
 use hardpoint::model::{DriverId, ElementId, Model, OutputSource};
 use hardpoint::run::{Analysis, Run};
 
-use super::certainty::Directions;
+use super::certainty::{Certainty, Directions};
 use super::fit::{FitWorkspace, SearchResult};
+use super::parameter::FittedParameter;
 use super::posture::derivative;
-use super::{Certainty, FittedParameter};
 
 /// Maximum number of proposed readings.
 const PROPOSED: usize = 5;

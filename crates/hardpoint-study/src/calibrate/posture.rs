@@ -14,8 +14,6 @@ use hardpoint::motion::{Stop, StopKind};
 use hardpoint::run::{Analysis, Run, Solution};
 use hardpoint::topology::{Formulation, TopologyError};
 
-use super::UnreachedPosture;
-
 /// Parameter of a law: the offset of its driver.
 const OFFSET: &str = "offset";
 
@@ -106,6 +104,18 @@ pub(super) fn read_outputs(model: &Model, data: &Measurements) -> Vec<OutputSour
     columns.into_iter().map(|column| all[column].source).collect()
 }
 
+/// Posture that the nominal design does not reach. Its readings are left out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UnreachedPosture {
+    /// Index of the posture.
+    pub posture: usize,
+    /// Description of the event.
+    pub why: String,
+    /// Positions of the drivers at the last solved position on the path to the posture, counted like those of
+    /// [`Measurements`](hardpoint::model::Measurements); `None` if the path has none.
+    pub last: Option<Vec<f64>>,
+}
+
 impl UnreachedPosture {
     /// Posture that a motion ends before.
     pub(super) fn of(posture: usize, stop: &Stop, model: &Model) -> Self {
@@ -116,7 +126,7 @@ impl UnreachedPosture {
 }
 
 /// Description of the end of a path to a posture. Its times are not those of a motion.
-pub(super) fn path_end(stop: &Stop, model: &Model) -> String {
+fn path_end(stop: &Stop, model: &Model) -> String {
     match stop.kind {
         StopKind::Limit | StopKind::CurveEnd { .. } | StopKind::BranchChange if stop.last_time.is_none() => {
             "the mechanism does not reach the design configuration of its drivers".into()
@@ -165,4 +175,25 @@ pub(super) fn planned(
     formulation: Formulation,
 ) -> Result<Vec<Analysis<'_>>, TopologyError> {
     models.iter().map(|model| Analysis::with(model, formulation)).collect()
+}
+
+/// Values of all outputs of a design in postures of the drivers, SI; the reason for each posture that is not reached.
+/// Postures are given as in [`Measurements`](hardpoint::model::Measurements).
+///
+/// # Errors
+/// A [`TopologyError`] if the mechanism cannot be driven.
+pub fn values_in_postures(
+    model: &Model,
+    design: &[f64],
+    postures: &[Vec<f64>],
+    formulation: Formulation,
+) -> Result<Vec<Result<Vec<f64>, String>>, TopologyError> {
+    let models: Vec<Model> = postures.iter().map(|p| posture_model(model, p, &[], &[])).collect();
+    let sources: Vec<OutputSource> = outputs(model).into_iter().map(|output| output.source).collect();
+    let values = |analysis: &Analysis<'_>| {
+        let solved = solve_posture(analysis, design, &sources, &mut StudyCost::default());
+        let values = |posture: ReachedPosture| (0..sources.len()).map(|m| posture.value(m)).collect();
+        solved.map(values).map_err(|stop| path_end(&stop, analysis.model()))
+    };
+    Ok(planned(&models, formulation)?.iter().map(values).collect())
 }

@@ -7,7 +7,7 @@
 use hardpoint::measure::outputs;
 use hardpoint::model::{Model, Offset, OffsetSource, PriorGroup, VariableId, VariablePrior};
 
-use super::FittedParameter;
+use super::parameter::FittedParameter;
 use hardpoint_search::{dot, singular};
 
 /// A singular value of the priors below this fraction of the largest is round-off.

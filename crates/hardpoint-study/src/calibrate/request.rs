@@ -8,8 +8,9 @@ use hardpoint::model::{
 };
 use hardpoint::topology::Formulation;
 
-use super::prior::parameters_of;
-use super::{FittedParameter, Loss, Prior};
+use super::loss::Loss;
+use super::parameter::FittedParameter;
+use super::prior::{Prior, parameters_of};
 use crate::random::moments;
 use crate::request::{RequestError, named, variable};
 

@@ -5,8 +5,8 @@ use hardpoint::run::Analysis;
 
 use super::certainty::Directions;
 use super::fit::{FitWorkspace, SearchResult};
-use super::posture::{read_outputs, solve_posture};
-use super::{FittedParameter, UnreachedPosture};
+use super::parameter::FittedParameter;
+use super::posture::{UnreachedPosture, read_outputs, solve_posture};
 use hardpoint_search::dot;
 
 /// Residuals of validation data.
