@@ -28,7 +28,7 @@ const CEILINGS: &[(&str, [usize; 5])] = &[
     ("hardpoint-report", [10, 0, 5, 0, 3]),
     ("hardpoint-study", [18, 1, 2, 0, 0]),
     ("hardpoint-tape", [4, 0, 2, 0, 0]),
-    ("joint", [1, 0, 0, 34, 0]),
+    ("joint", [1, 0, 0, 0, 0]),
     ("law", [1, 0, 6, 0, 0]),
     ("load", [0, 0, 3, 0, 6]),
     ("measure", [6, 0, 0, 0, 6]),
