@@ -1,7 +1,5 @@
 //! Pages of models, as written by `run`, the gallery with its drawings, and the page of a new linkage.
 
-use std::collections::HashMap;
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use hardpoint::topology::Formulation;
@@ -19,10 +17,11 @@ use crate::meter::Listener;
 use crate::session::Session;
 use crate::{maps, run};
 
-use super::Studio;
-use super::folder::{FileError, Revision};
+use super::folder::FileError;
+use super::pages::Made;
 use super::routes::{blocking, no_file, no_page};
 use super::server::Answer;
+use super::state::Studio;
 
 /// Address of the page of a new linkage.
 pub const NEW: &str = "/new";
@@ -62,28 +61,6 @@ struct About<'a> {
     /// Case of the page, if the model has cases.
     case: Option<&'a str>,
     cases: Vec<&'a str>,
-}
-
-/// Page generation: one page at a time; the last page serves all requests that arrived before it was started.
-#[derive(Default)]
-pub struct Pages {
-    clock: AtomicU64,
-    last: tokio::sync::Mutex<Option<Made>>,
-    /// Drawings of the gallery, with the revision of their model.
-    drawings: Mutex<HashMap<String, (Revision, String)>>,
-}
-
-struct Made {
-    begun: u64,
-    file: String,
-    case: Option<String>,
-    html: Bytes,
-}
-
-impl Pages {
-    fn tick(&self) -> u64 {
-        self.clock.fetch_add(1, Ordering::SeqCst)
-    }
 }
 
 /// Page of a model in its current state on disk.

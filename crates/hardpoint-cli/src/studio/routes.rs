@@ -13,8 +13,9 @@ use serde_json::json;
 
 use super::folder::FileError;
 use super::server::{Answer, body};
+use super::state::Studio;
 use super::studies::StudyRequest;
-use super::{Studio, page, watch};
+use super::{page, watch};
 
 /// Query of an address; of repeated keys, the last one counts.
 struct Query(HashMap<String, String>);

@@ -25,9 +25,9 @@ use hardpoint_file::LARGEST_FILE;
 
 use crate::session::Session;
 
-use super::Studio;
 use super::address::TokenSource;
 use super::routes;
+use super::state::Studio;
 
 /// Maximum number of simultaneous connections; further ones wait.
 const CONNECTIONS: usize = 256;

@@ -10,8 +10,8 @@ use serde_json::json;
 use tokio::sync::broadcast::error::RecvError;
 use tokio::time::{Instant, timeout_at};
 
-use super::Studio;
 use super::server::Answer;
+use super::state::Studio;
 
 /// Interval of reading a file: reported times of the last change are not reliable on all systems, and models are small.
 const POLL: Duration = Duration::from_millis(500);

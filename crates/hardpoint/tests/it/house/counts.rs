@@ -21,7 +21,7 @@ const CEILINGS: &[(&str, [usize; 5])] = &[
     ("draft", [11, 0, 3, 481, 5]),
     ("equilibrium", [1, 0, 0, 0, 0]),
     ("expression", [1, 0, 2, 0, 0]),
-    ("hardpoint-cli", [14, 0, 14, 93, 0]),
+    ("hardpoint-cli", [14, 0, 14, 0, 0]),
     ("hardpoint-export", [4, 0, 0, 1309, 0]),
     ("hardpoint-file", [11, 0, 0, 0, 0]),
     ("hardpoint-import", [36, 0, 10, 0, 0]),
