@@ -13,7 +13,7 @@ use crate::c::MotionSource;
 use crate::xml::Xml;
 use crate::{UnsupportedFeature, escaped};
 
-use super::{Role, Variable};
+use super::variable::{Role, Variable};
 
 /// Description of a unit.
 pub struct Description<'a> {
