@@ -3,7 +3,7 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-use hardpoint::model::Model;
+use hardpoint::model::{Model, OptimizationSettings};
 
 use super::assessment::{assess, failed_design, limit_scales};
 use super::optima::best;
@@ -34,15 +34,7 @@ pub fn optimize(
         Ok(point) => (Some(assess(&problem, &point, &limit_scales(&problem, &point))), None),
         Err(refusal) => (None, Some(failed_design(vec![0.0; model.variables.len()], refusal))),
     };
-    let (mut variants, mut others) = (Vec::new(), Vec::new());
-    for variant in Variant::all(model, motions, settings, &|| more()) {
-        // The motions of the model itself are there already.
-        if !variant.is_own() {
-            let Some(motions) = variant.motions(model, motions) else { continue };
-            others.push(motions);
-        }
-        variants.push(variant);
-    }
+    let (variants, others) = driven_variants(model, motions, settings, &|| more());
     let problems: Vec<Problem<'_>> = std::iter::once(motions)
         .chain(&others)
         .map(|motions| Problem::new(model, motions, settings))
@@ -83,4 +75,22 @@ pub fn optimize(
         searches.into_iter().map(|s| s.expect("every start was searched from")).collect();
     searches.iter().for_each(|s| cost += s.cost);
     Optimization { nominal, nominal_failure, variants, best: best(&searches), searches, cost }
+}
+
+/// Variants that can be driven, and the motions of those other than the model itself.
+fn driven_variants(
+    model: &Model,
+    motions: &Motions<'_>,
+    settings: &OptimizationSettings,
+    more: &dyn Fn() -> bool,
+) -> (Vec<Variant>, Vec<Motions<'static>>) {
+    let (mut variants, mut others) = (Vec::new(), Vec::new());
+    for variant in Variant::all(model, motions, settings, more) {
+        if !variant.is_own() {
+            let Some(motions) = variant.motions(model, motions) else { continue };
+            others.push(motions);
+        }
+        variants.push(variant);
+    }
+    (variants, others)
 }

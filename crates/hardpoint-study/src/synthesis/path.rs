@@ -32,18 +32,8 @@ pub(super) fn along_path(
     turns: Option<&[f64]>,
     more: &(dyn Fn() -> bool + Sync),
 ) -> Result<Synthesis, TaskError> {
-    if points.len() < 3 {
-        return Err(TaskError::Count(points.len()));
-    }
     let size = extent(points);
-    let follows = |k: usize| if k + 1 < points.len() { Some(k + 1) } else { is_closed.then_some(0) };
-    for k in 0..points.len() {
-        if let Some(next) = follows(k)
-            && (points[next] - points[k]).norm() <= COINCIDE * size
-        {
-            return Err(TaskError::Coincide([k, next]));
-        }
-    }
+    check_points(points, is_closed, size)?;
     if let Some(turns) = turns {
         check_turns(turns, points.len())?;
     }
@@ -82,26 +72,48 @@ pub(super) fn along_path(
             judge.with_cognates(fit.nearest());
         }
     }
-    let PathJudge { mut found, mut good, .. } = judge;
+    let PathJudge { found, good, .. } = judge;
+    // Fewer than nine points are met by families.
+    let is_family = points.len() < 9 && turns.is_none();
+    Ok(Synthesis { answers: answers_of(good, task, size, is_family), ..found })
+}
+
+/// Checks the number of points, and that none coincides with the next one.
+fn check_points(points: &[Complex], is_closed: bool, size: f64) -> Result<(), TaskError> {
+    if points.len() < 3 {
+        return Err(TaskError::Count(points.len()));
+    }
+    let follows = |k: usize| if k + 1 < points.len() { Some(k + 1) } else { is_closed.then_some(0) };
+    for k in 0..points.len() {
+        if let Some(next) = follows(k)
+            && (points[next] - points[k]).norm() <= COINCIDE * size
+        {
+            return Err(TaskError::Coincide([k, next]));
+        }
+    }
+    Ok(())
+}
+
+/// Best of the linkages that are not alike, up to the number of answers.
+fn answers_of(mut good: Vec<Answer>, task: &Task, size: f64, is_family: bool) -> Vec<Answer> {
     // Answers that meet the points are ranked by their score, all others by their distance over their score: a linkage
     // that jams is of no use, however near it comes.
     let is_met = |a: &Answer| a.largest <= task.tolerance || a.rms <= EXACT * size;
     let level = |a: &Answer| if is_met(a) { 0.0 } else { a.rms / a.score };
     good.sort_by(|a, b| level(a).total_cmp(&level(b)).then(b.score.total_cmp(&a.score)));
-    // Fewer than nine points are met by families.
-    let is_family = points.len() < 9 && turns.is_none();
+    let mut answers: Vec<Answer> = Vec::new();
     for answer in good {
         let alike = match () {
             () if is_family => ALIKE,
             () if answer.rms > EXACT * size => MERGED,
             () => SAME,
         };
-        let is_known = found.answers.iter().any(|a| is_alike(&a.linkage, &answer.linkage, alike * size));
-        if found.answers.len() < task.answers && !is_known {
-            found.answers.push(answer);
+        let is_known = answers.iter().any(|a| is_alike(&a.linkage, &answer.linkage, alike * size));
+        if answers.len() < task.answers && !is_known {
+            answers.push(answer);
         }
     }
-    Ok(found)
+    answers
 }
 
 /// Linkages that follow a path, and the numbers of those that do not.

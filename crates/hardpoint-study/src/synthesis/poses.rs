@@ -2,7 +2,7 @@
 
 use sobol_burley::sample;
 
-use hardpoint_planar::defects::Defect;
+use hardpoint_planar::defects::{Defect, Passage};
 use hardpoint_planar::dyads::{self, Dyad};
 use hardpoint_planar::linkage::{Guide, Linkage};
 use hardpoint_planar::plane::{Complex, Displacement, Pose};
@@ -27,37 +27,15 @@ pub(super) fn through_poses(
     poses: &[Pose],
     more: &(dyn Fn() -> bool + Sync),
 ) -> Result<Synthesis, TaskError> {
-    if !(3..=5).contains(&poses.len()) {
-        return Err(TaskError::Count(poses.len()));
-    }
-    if !task.fixed_pivots.is_empty() && poses.len() != 3 {
-        return Err(TaskError::FixedPivots);
-    }
     let origins: Vec<Complex> = poses.iter().map(|p| p.at).collect();
     let size = extent(&origins);
-    let turned = |a: &Pose, b: &Pose| (0.5 * (a.angle - b.angle)).sin().abs();
-    for j in 0..poses.len() {
-        for i in 0..j {
-            let apart = (origins[i] - origins[j]).norm();
-            if apart <= COINCIDE * size && turned(&poses[i], &poses[j]) <= COINCIDE {
-                return Err(TaskError::Coincide([i, j]));
-            }
-        }
-    }
-    if poses.iter().all(|p| turned(p, &poses[0]) <= COINCIDE) {
-        return Err(TaskError::Translation);
-    }
-    if let Some(pole) = one_pole(poses, size) {
-        return Err(TaskError::OnePole(pole));
-    }
+    check_poses(task, poses, size)?;
     let middle = origins.iter().fold(Complex::ZERO, |sum, p| sum + *p).times(1.0 / poses.len() as f64);
     let frame = Frame { middle, size, x: Complex::unit(poses[0].angle) };
     let own: Vec<Pose> =
         poses.iter().map(|p| Pose { at: frame.inward(p.at), angle: p.angle - poses[0].angle }).collect();
     let moves: Vec<Displacement> = own.iter().map(|p| Displacement::between(own[0], *p)).collect();
     let (cranks, sliders) = dyads_of(task, &moves, &frame);
-    let is_family = poses.len() < 5 && task.fixed_pivots.is_empty();
-
     let mut found = Synthesis { size, ..Synthesis::default() };
     let mut good = Vec::new();
     let mut rejected: Vec<(Defect, f64, Linkage)> = Vec::new();
@@ -90,28 +68,7 @@ pub(super) fn through_poses(
             pair(&cranks[j], slider, &mut found.slider_cranks);
         }
     }
-    good.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let alike = if is_family { ALIKE } else { SAME };
-    for (score, linkage, passage) in good {
-        if found.answers.len() == task.answers {
-            break;
-        }
-        let outward = frame.linkage_outward(&linkage);
-        if found.answers.iter().any(|a| is_alike(&a.linkage, &outward, alike * size)) {
-            continue;
-        }
-        let misfit = |dyad: Option<Dyad>| dyad.map_or(0.0, |d| d.misfit(&moves));
-        let (first, second) = dyads_in(&linkage);
-        found.answers.push(Answer {
-            linkage: Linkage { p: poses[0].at, ..outward },
-            moves: poses.iter().map(|p| Displacement::between(poses[0], *p)).collect(),
-            passage,
-            kind: linkage.kind(),
-            rms: 0.0,
-            largest: misfit(first).max(misfit(second)) * size,
-            score,
-        });
-    }
+    found.answers = answers_of(good, task, poses, &moves, &frame);
     rejected.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
     let rejections = rejected.into_iter().take(task.answers);
     found.rejections =
@@ -120,6 +77,68 @@ pub(super) fn through_poses(
     found.cranks = cranks.iter().map(outward).collect();
     found.sliders = sliders.iter().map(outward).collect();
     Ok(found)
+}
+
+/// Checks the number of poses, and that they determine linkages.
+fn check_poses(task: &Task, poses: &[Pose], size: f64) -> Result<(), TaskError> {
+    if !(3..=5).contains(&poses.len()) {
+        return Err(TaskError::Count(poses.len()));
+    }
+    if !task.fixed_pivots.is_empty() && poses.len() != 3 {
+        return Err(TaskError::FixedPivots);
+    }
+    let turned = |a: &Pose, b: &Pose| (0.5 * (a.angle - b.angle)).sin().abs();
+    for j in 0..poses.len() {
+        for i in 0..j {
+            let apart = (poses[i].at - poses[j].at).norm();
+            if apart <= COINCIDE * size && turned(&poses[i], &poses[j]) <= COINCIDE {
+                return Err(TaskError::Coincide([i, j]));
+            }
+        }
+    }
+    if poses.iter().all(|p| turned(p, &poses[0]) <= COINCIDE) {
+        return Err(TaskError::Translation);
+    }
+    if let Some(pole) = one_pole(poses, size) {
+        return Err(TaskError::OnePole(pole));
+    }
+    Ok(())
+}
+
+/// Best of the linkages that are not alike, up to the number of answers; `good` have their scores in coordinates of the
+/// frame.
+fn answers_of(
+    mut good: Vec<(f64, Linkage, Passage)>,
+    task: &Task,
+    poses: &[Pose],
+    moves: &[Displacement],
+    frame: &Frame,
+) -> Vec<Answer> {
+    good.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let is_family = poses.len() < 5 && task.fixed_pivots.is_empty();
+    let alike = if is_family { ALIKE } else { SAME } * frame.size;
+    let mut answers: Vec<Answer> = Vec::new();
+    for (score, linkage, passage) in good {
+        if answers.len() == task.answers {
+            break;
+        }
+        let outward = frame.linkage_outward(&linkage);
+        if answers.iter().any(|a| is_alike(&a.linkage, &outward, alike)) {
+            continue;
+        }
+        let misfit = |dyad: Option<Dyad>| dyad.map_or(0.0, |d| d.misfit(moves));
+        let (first, second) = dyads_in(&linkage);
+        answers.push(Answer {
+            linkage: Linkage { p: poses[0].at, ..outward },
+            moves: poses.iter().map(|p| Displacement::between(poses[0], *p)).collect(),
+            passage,
+            kind: linkage.kind(),
+            rms: 0.0,
+            largest: misfit(first).max(misfit(second)) * frame.size,
+            score,
+        });
+    }
+    answers
 }
 
 /// The two dyads of a linkage.

@@ -1,6 +1,8 @@
 //! Tolerance study of a design.
 
-use hardpoint::model::Model;
+use std::ops::ControlFlow;
+
+use hardpoint::model::{Model, VariableId};
 
 use super::allocation::allocate;
 use super::data::{StudyData, deviations};
@@ -31,35 +33,13 @@ pub fn tolerance(
         return Err(Error::Request(Request::nothing_varies(settings)));
     }
     let study = StudyData { model, motions, numbers, settings, deviations: &deviations, nominal: &nominal };
-    let (studied, unknown) = study.studied();
     let mut interrupted = false;
     let mut tell = |progressed: Progress<'_>| {
         let flow = progress(progressed);
         interrupted |= flow.is_break();
         flow
     };
-    let hessians = study.hessians(&studied, &mut cost, &mut tell, more);
-    let metrics: Vec<MetricSpread> = studied
-        .iter()
-        .zip(hessians)
-        .map(|(one, hessian)| study.spread(one, hessian.as_deref(), &mut cost))
-        .collect();
-    let (curves, side_changes) = study.curves(more);
-    let limits = study.limits(&metrics);
-    let mut found = ToleranceResult {
-        variables: deviations.variables.clone(),
-        left_out,
-        metrics,
-        contributions: Vec::new(),
-        unknown,
-        curves,
-        side_changes,
-        limits,
-        sampled: None,
-        allocation: None,
-        cost,
-        interrupted: false,
-    };
+    let mut found = from_derivatives(&study, left_out, cost, &mut tell, more);
     if settings.samples > 0 {
         let sampled = study.sample(&deviations, sampled_of(&found), threads, &mut tell, more);
         found.cost += sampled.cost;
@@ -87,6 +67,40 @@ pub fn tolerance(
     Ok(found)
 }
 
+/// Result without sampled designs and allocation; `cost` is that of the nominal design.
+fn from_derivatives(
+    study: &StudyData<'_>,
+    left_out: Vec<VariableId>,
+    mut cost: StudyCost,
+    tell: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>,
+    more: &(dyn Fn() -> bool + Sync),
+) -> ToleranceResult {
+    let (studied, unknown) = study.studied();
+    let hessians = study.hessians(&studied, &mut cost, tell, more);
+    let metrics: Vec<MetricSpread> = studied
+        .iter()
+        .zip(hessians)
+        .map(|(one, hessian)| study.spread(one, hessian.as_deref(), &mut cost))
+        .collect();
+    let (curves, side_changes) = study.curves(more);
+    let limits = study.limits(&metrics);
+    ToleranceResult {
+        variables: study.deviations.variables.clone(),
+        left_out,
+        metrics,
+        contributions: Vec::new(),
+        unknown,
+        curves,
+        side_changes,
+        limits,
+        sampled: None,
+        allocation: None,
+        cost,
+        interrupted: false,
+    }
+}
+
+/// Quantities of a result that designs are sampled for.
 fn sampled_of(found: &ToleranceResult) -> SampledQuantities<'_> {
     SampledQuantities { metrics: &found.metrics, curves: &found.curves, limits: &found.limits }
 }

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use hardpoint::model::Model;
+use hardpoint::model::{Model, OptimizationSettings};
 
 use super::front::{End, Front};
 use super::functions::State;
@@ -46,34 +46,16 @@ pub fn trade_off(model: &Model, motions: &Motions<'_>, request: &Request, contro
         }
         Err(refusal) => result.nominal_failure = Some(failed_design(undesigned, refusal)),
     }
-    // The optimum of each goal alone.
-    let mut anchors = Vec::new();
-    for goal in 0..settings.goals.len() {
-        let mut alone = settings.clone();
-        alone.goals = vec![settings.goals[goal].clone()];
-        let alone = optimize::Request { settings: alone, first: 0 };
-        let mut report = |step: Progress<'_>| {
-            progress(Progress { step: step.step, done: 0, total: *points, is_counted: false })
-        };
-        let control = Control { threads, progress: &mut report, more };
-        let found = optimize::optimize(model, motions, &alone, control);
-        result.cost += found.cost;
-        result.anchor_designs += found.cost.designs;
-        let search = found.best.map(|k| &found.searches[k]);
-        let status = search.or(found.searches.first()).map_or(Status::NoStart, |s| s.status);
-        match search.and_then(|s| s.found.as_ref()).filter(|f| f.violation <= optimize::LIMIT_KEPT) {
-            Some(found) if !matches!(status, Status::Interrupted | Status::NoEffect) => {
-                anchors.push(problem.parts(&found.design));
-            }
-            _ => {
-                result.cost += memory.cost.take();
-                if status != Status::Interrupted {
-                    result.outcome = Outcome::NoAnchor(goal, status);
-                }
-                return result;
-            }
+    let mut report = |step: Progress<'_>| {
+        progress(Progress { step: step.step, done: 0, total: *points, is_counted: false })
+    };
+    let anchors = match anchors(&problem, Control { threads, progress: &mut report, more }, &mut result) {
+        Ok(anchors) => anchors,
+        Err(outcome) => {
+            result.cost += memory.cost.take();
+            return TradeOff { outcome, ..result };
         }
-    }
+    };
     let mut count = 0;
     let mut report = || {
         count += 1;
@@ -97,4 +79,33 @@ pub fn trade_off(model: &Model, motions: &Motions<'_>, request: &Request, contro
     }
     result.cost += memory.cost.take();
     result
+}
+
+/// Optimum of each goal alone, as fractions of the bounds, with the cost added to the result; the outcome of the
+/// trade-off if one is not found.
+fn anchors(
+    problem: &Problem<'_>,
+    control: Control<'_>,
+    result: &mut TradeOff,
+) -> Result<Vec<Vec<f64>>, Outcome> {
+    let Control { threads, progress, more } = control;
+    let mut anchors = Vec::new();
+    for (goal, alone) in problem.settings.goals.iter().enumerate() {
+        let settings = OptimizationSettings { goals: vec![alone.clone()], ..problem.settings.clone() };
+        let request = optimize::Request { settings, first: 0 };
+        let control = Control { threads, progress: &mut *progress, more };
+        let found = optimize::optimize(problem.model, problem.motions, &request, control);
+        result.cost += found.cost;
+        result.anchor_designs += found.cost.designs;
+        let search = found.best.map(|k| &found.searches[k]);
+        let status = search.or(found.searches.first()).map_or(Status::NoStart, |s| s.status);
+        match search.and_then(|s| s.found.as_ref()).filter(|f| f.violation <= optimize::LIMIT_KEPT) {
+            Some(found) if !matches!(status, Status::Interrupted | Status::NoEffect) => {
+                anchors.push(problem.parts(&found.design));
+            }
+            _ if status == Status::Interrupted => return Err(Outcome::Interrupted),
+            _ => return Err(Outcome::NoAnchor(goal, status)),
+        }
+    }
+    Ok(anchors)
 }
