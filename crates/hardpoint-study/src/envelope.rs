@@ -13,7 +13,7 @@ use std::cell::Cell;
 use std::ops::ControlFlow;
 
 use hardpoint::joint::Quantity;
-use hardpoint::model::{Grid, Model, ShapeKind};
+use hardpoint::model::{Grid, Model};
 use hardpoint::motion::{Stop, StopKind};
 use hardpoint::run::{Analysis, Run, SweptShape};
 use hardpoint::space::Vec3;
@@ -31,8 +31,6 @@ use super::request::RequestError;
 const MOST_CELLS: usize = 1_000_000;
 /// Maximum number of distances from cores or triangles that are evaluated for all surfaces: about a minute.
 const MOST_DISTANCES: usize = 600_000_000;
-/// Number of triangles of a mesh from which the distance of a point is computed, about.
-const TRIANGLES_OF_MESH: usize = 20;
 /// Poses between those of an envelope reach beyond it by at most this part of the amount by which the last ones that
 /// were added reached beyond the others, where the shape is round: scallops are of second order in the spacing.
 const OF_ROUND: f64 = 0.375;
@@ -201,18 +199,18 @@ pub fn envelope(
         }
         Ok(gathered)
     };
-    let most_distances = most_distances(&model.shapes[request.shape.0].kind);
+    let mut motions = Vec::new();
+    for sweep in &request.sweeps {
+        motions.push(Positions::first(model, formulation, sweep)?);
+    }
+    let mut found = poses_of(&mut motions, &mut cost)?;
+    let most_distances = MOST_DISTANCES / found.swept.triangles_per_distance();
     let left = Cell::new(most_distances);
     let of = |swept: &SweptShape, cell: f64| {
         let union = Union { swept, margin: request.margin };
         let made = surface(&union, swept.len(), union.cube(), cell, MOST_CELLS, &left, more);
         if more() { Ok(made) } else { Err(EnvelopeError::Interrupted) }
     };
-    let mut motions = Vec::new();
-    for sweep in &request.sweeps {
-        motions.push(Positions::first(model, formulation, sweep)?);
-    }
-    let mut found = poses_of(&mut motions, &mut cost)?;
     let radius = found.swept.ball(0).1;
     let mut is_resolved = false;
     for _ in 0..MOST_PASSES {
@@ -298,21 +296,6 @@ fn refined(
         made = of(cell);
     }
     surface
-}
-
-/// Maximum number of computed distances, by the cost of each.
-fn most_distances(kind: &ShapeKind) -> usize {
-    let each = match kind {
-        ShapeKind::Hull { facets, .. } => facets.len(),
-        ShapeKind::Mesh { .. } => TRIANGLES_OF_MESH,
-        ShapeKind::Sphere { .. }
-        | ShapeKind::Capsule { .. }
-        | ShapeKind::Ring { .. }
-        | ShapeKind::Cylinder { .. }
-        | ShapeKind::Tyre { .. }
-        | ShapeKind::Plane { .. } => 1,
-    };
-    MOST_DISTANCES / each
 }
 
 /// Largest distances by which the surface and the corners of finer poses are outside of the coarser ones.

@@ -314,6 +314,39 @@ fn a_ball_against_a_closed_mesh_a_box_and_a_hull_is_that_of_the_published_data()
     }
 }
 
+#[test]
+fn the_distance_of_a_ball_that_moves_over_the_middle_of_a_face_has_no_acceleration() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("cube.obj"), CUBE).unwrap();
+    for shape in ["mesh = \"cube.obj\"", "box = [40, 40, 40]"] {
+        // At t = 0 over both diagonals of the face.
+        for axis in ["[1, 1, 0]", "[1, -1, 0]", "[0, 1, 0]"] {
+            let text = format!(
+                r#"
+name = "over"
+units = {{ length = "mm", angle = "deg" }}
+time = {{ start = -1, end = 1, steps = 2 }}
+bodies = {{ slider = {{}} }}
+joints.slide = {{ type = "translational", bodies = ["ground", "slider"], at = [0, 0, 40], axis = {axis} }}
+drivers.push = {{ joint = "slide", law = "5*t" }}
+shapes.block = {{ body = "ground", {shape} }}
+shapes.ball = {{ body = "slider", sphere = [0, 0, 40], radius = 3 }}
+clearances.gap = {{ between = ["ball", "block"] }}
+"#
+            );
+            let path = folder.path().join("over.toml");
+            std::fs::write(&path, text).unwrap();
+            let model = hardpoint_file::read(&path).unwrap_or_else(|e| panic!("{e}")).model;
+            let found = Analysis::new(&model).unwrap().clearances(&[]);
+            for at in &found.pairs[0].curve {
+                let [distance, rate, acceleration] = at.distance.map(|x| x * 1e3);
+                assert_near(distance, 17.0, shape);
+                assert!(rate.abs() < EXACT && acceleration.abs() < EXACT, "{shape}, {axis}: {at:?}");
+            }
+        }
+    }
+}
+
 /// Shapes of every kind on a body (`m_`), and of every kind on ground (`g_`).
 const SHAPES: [(&str, &str, &str); 9] = [
     ("sphere", "sphere = \"p\", radius = \"r\"", "sphere = \"q\", radius = \"s\""),

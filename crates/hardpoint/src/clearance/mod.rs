@@ -7,6 +7,7 @@
 //!
 //! `docs/theory.md`, section 16.
 
+mod block;
 mod bodies;
 mod circle;
 mod core;

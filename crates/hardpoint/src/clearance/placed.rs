@@ -99,7 +99,7 @@ impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
             }
             ShapeKind::Hull { points, facets } => {
                 let points = self.points(points);
-                View::Hull { points: &points, facets }.ball()
+                View::Hull { points: &points, facets, block: None }.ball()
             }
             with_core!() => self.plain_core(shape).expect("it is no surface").ball(),
         };
@@ -136,9 +136,7 @@ impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
         // Surfaces in the frame in which their points are known, and that frame.
         let views = number::both([0, 1], |k| match kinds[k] {
             ShapeKind::Mesh { body, surface } => Some((View::Mesh(surface), self.bodies.pose(*body))),
-            ShapeKind::Hull { facets, .. } => {
-                Some((View::Hull { points: &corners[k], facets }, Pose::IDENTITY))
-            }
+            ShapeKind::Hull { facets, .. } => Some((View::hull(&corners[k], facets), Pose::IDENTITY)),
             with_core!() => None,
         });
         let (near, frame) = match (cores, views) {

@@ -3,9 +3,14 @@
 //! The surface of a closed mesh and of a convex hull has an inside: points there have negative distances, and the
 //! distance of a core is that of its deepest point.
 
-use crate::number;
-use crate::space::{Pose, Surface, TrianglePart, Vec3, is_pierced, nearest_of_triangle};
+use std::ops::Range;
 
+use crate::number;
+use crate::space::{
+    NearestTriangle, Pose, Real, Surface, TrianglePart, Vec3, is_behind, is_pierced, nearest_of_triangle,
+};
+
+use super::block::Block;
 use super::circle::Circle;
 use super::core::Core;
 use super::feature::{Feature, PARALLEL};
@@ -21,28 +26,58 @@ pub(super) enum View<'a> {
     /// A mesh, with a tree.
     Mesh(&'a Surface),
     /// A convex hull with few facets.
-    Hull { points: &'a [Vec3], facets: &'a [[u32; 3]] },
+    Hull { points: &'a [Vec3], facets: &'a [[u32; 3]], block: Option<Block> },
+    /// One triangle of a mesh.
+    Facet { surface: &'a Surface, triangle: usize },
+}
+
+impl<'a> View<'a> {
+    /// A convex hull.
+    pub fn hull(points: &'a [Vec3], facets: &'a [[u32; 3]]) -> Self {
+        Self::Hull { points, facets, block: Block::of(points) }
+    }
 }
 
 impl View<'_> {
     fn triangle(&self, t: usize) -> ([Vec3; 3], [u32; 3]) {
         match self {
-            Self::Mesh(surface) => (surface.corners(t), surface.triangles()[t]),
-            Self::Hull { points, facets } => (number::each(&facets[t], |k| points[k as usize]), facets[t]),
+            Self::Mesh(surface) | Self::Facet { surface, .. } => (surface.corners(t), surface.triangles()[t]),
+            Self::Hull { points, facets, .. } => {
+                (number::each(&facets[t], |k| points[k as usize]), facets[t])
+            }
         }
     }
 
-    /// Corners of its triangles.
+    /// Numbers of its triangles.
+    fn triangles(&self) -> Range<usize> {
+        match self {
+            Self::Mesh(surface) => 0..surface.triangles().len(),
+            Self::Hull { facets, .. } => 0..facets.len(),
+            Self::Facet { triangle, .. } => *triangle..*triangle + 1,
+        }
+    }
+
+    /// Corners of triangles, by their numbers.
     fn points(&self) -> &[Vec3] {
         match self {
-            Self::Mesh(surface) => surface.vertices(),
+            Self::Mesh(surface) | Self::Facet { surface, .. } => surface.vertices(),
             Self::Hull { points, .. } => points,
         }
+    }
+
+    /// Corners of its own triangles, with their numbers.
+    fn corners(&self) -> impl Iterator<Item = (u32, Vec3)> {
+        let (some, all) = match self {
+            Self::Mesh(_) | Self::Hull { .. } => (&[][..], self.points().len() as u32),
+            Self::Facet { surface, triangle } => (&surface.triangles()[*triangle][..], 0),
+        };
+        some.iter().copied().chain(0..all).map(|k| (k, self.points()[k as usize]))
     }
 
     /// True if it has an inside.
     fn is_closed(&self) -> bool {
         match self {
+            Self::Facet { .. } => false,
             Self::Mesh(surface) => surface.is_closed(),
             Self::Hull { .. } => true,
         }
@@ -51,7 +86,7 @@ impl View<'_> {
     /// A ball around it.
     pub fn ball(&self) -> (Vec3, f64) {
         match self {
-            Self::Mesh(surface) => surface.ball(),
+            Self::Mesh(surface) | Self::Facet { surface, .. } => surface.ball(),
             Self::Hull { points, .. } => {
                 let centre = points.iter().fold(Vec3::ZERO, |sum, p| sum + *p) * (1.0 / points.len() as f64);
                 (centre, points.iter().map(|p| (*p - centre).norm()).fold(0.0, f64::max))
@@ -63,8 +98,8 @@ impl View<'_> {
     fn search(&self, least: f64, apart: &dyn Fn(Vec3) -> f64, each: &mut dyn FnMut(usize) -> f64) {
         match self {
             Self::Mesh(surface) => surface.search(least, apart, each),
-            Self::Hull { facets, .. } => {
-                for t in 0..facets.len() {
+            Self::Hull { .. } | Self::Facet { .. } => {
+                for t in self.triangles() {
                     each(t);
                 }
             }
@@ -73,44 +108,52 @@ impl View<'_> {
 
     /// Distance of a point, negative inside.
     pub fn distance_from(&self, p: Vec3) -> f64 {
-        self.nearest_to(p).distance
+        match self {
+            Self::Hull { block: Some(block), .. } => block.distance(p),
+            Self::Hull { block: None, .. } | Self::Mesh(_) | Self::Facet { .. } => {
+                self.nearest_to(p).distance
+            }
+        }
     }
 
     /// The nearest point to a point; its distance is negative inside.
     pub fn nearest_to(&self, p: Vec3) -> Nearest {
         let own = Feature::Point(0.0);
-        if let Self::Hull { points, facets } = self {
-            // Inside a convex hull the nearest facet is the one whose plane is nearest.
-            let height = |f: &[u32; 3]| {
-                let [a, b, c] = number::each(f, |k| points[k as usize]);
-                let normal = (b - a).cross(c - a);
-                let length = normal.norm();
-                (normal.dot(p - a) / length, normal * (1.0 / length), *f)
-            };
-            let most = facets.iter().map(height).reduce(|a, b| if b.0 > a.0 { b } else { a });
-            if let Some((height, normal, facet)) = most.filter(|most| most.0 <= 0.0) {
-                return found([own, Feature::Facet(facet)], [p, p - normal * height], height);
+        let best = match self {
+            Self::Mesh(surface) => surface.nearest_to(p),
+            Self::Hull { block: Some(block), .. } => return block.nearest_to(p),
+            Self::Hull { points, facets, block: None } => {
+                // Inside a convex hull the nearest facet is the one whose plane is nearest.
+                let height = |f: &[u32; 3]| {
+                    let [a, b, c] = number::each(f, |k| points[k as usize]);
+                    let normal = (b - a).cross(c - a);
+                    let length = normal.norm();
+                    (normal.dot(p - a) / length, normal * (1.0 / length), *f)
+                };
+                let most = facets.iter().map(height).reduce(|a, b| if b.0 > a.0 { b } else { a });
+                if let Some((height, normal, facet)) = most.filter(|most| most.0 <= 0.0) {
+                    return found([own, Feature::Facet(facet)], [p, p - normal * height], height);
+                }
+                self.nearest_of_all(p)
             }
-        }
-        let mut best: Option<(f64, Vec3, TrianglePart)> = None;
-        self.search(f64::INFINITY, &|q| (q - p).norm(), &mut |t| {
-            let (corners, ids) = self.triangle(t);
-            if let Some((apart, ..)) = best.filter(|(apart, q, _)| is_behind(&[p], corners, p - *q, *apart)) {
-                return apart;
-            }
-            let (q, part) = nearest_of_triangle(p, corners, ids);
-            let apart = (q - p).norm();
-            if best.is_none_or(|best| apart < best.0) {
-                best = Some((apart, q, part));
-            }
-            apart
-        });
+            Self::Facet { .. } => self.nearest_of_all(p),
+        };
         let Some((apart, q, part)) = best else {
             // The page has no meshes: nothing is known there.
             return found([own, Feature::Vertex(0)], [p, p], f64::NAN);
         };
         let inside = matches!(self, Self::Mesh(surface) if surface.is_inside(p, part, q));
         found([own, of_part(part)], [p, q], if inside { -apart } else { apart })
+    }
+
+    /// The nearest of all triangles, without a search.
+    fn nearest_of_all(&self, p: Vec3) -> Option<(f64, Vec3, TrianglePart)> {
+        let mut best = NearestTriangle::to(p);
+        for t in self.triangles() {
+            let (corners, ids) = self.triangle(t);
+            best.visit(corners, ids);
+        }
+        best.found
     }
 
     /// The nearest points of a triangle's edges and a core; `core_and_edge` is given both ends of an edge.
@@ -171,14 +214,6 @@ fn of_part(part: TrianglePart) -> Feature {
     }
 }
 
-/// True if all corners of a triangle are at least this far from some points along n, whose length is that distance: the
-/// triangle is no nearer.
-fn is_behind(points: &[Vec3], corners: [Vec3; 3], n: Vec3, distance: f64) -> bool {
-    let lowest = points.iter().map(|p| n.dot(*p)).fold(f64::INFINITY, f64::min);
-    let highest = corners.iter().map(|v| n.dot(*v)).fold(f64::NEG_INFINITY, f64::max);
-    distance > 0.0 && lowest - highest >= distance * distance
-}
-
 /// True if two triangles are at least this far apart along the line between their centroids.
 fn is_beyond(p: [Vec3; 3], q: [Vec3; 3], distance: f64) -> bool {
     let between = (p[0] + p[1] + p[2] - q[0] - q[1] - q[2]) * (1.0 / 3.0);
@@ -233,11 +268,10 @@ pub(super) fn core_and_surface(core: &Core, view: View<'_>) -> Nearest {
             if axis.distance <= 0.0 { best.overlapping(axis.points[0]) } else { best }
         }
         Core::HalfSpace { point, normal } => {
-            let height = |p: &Vec3| normal.dot(*p - *point);
-            let lowest = view.points().iter().enumerate().map(|(k, p)| (height(p), k, *p));
+            let lowest = view.corners().map(|(k, p)| (normal.dot(p - *point), k, p));
             match lowest.reduce(|a, b| if b.0 < a.0 { b } else { a }) {
                 Some((height, k, p)) => {
-                    let features = [Feature::Face(1.0), Feature::Vertex(k as u32)];
+                    let features = [Feature::Face(1.0), Feature::Vertex(k)];
                     found(features, [p - *normal * height, p], height)
                 }
                 None => found([Feature::Face(1.0), Feature::Vertex(0)], [*point; 2], f64::NAN),
@@ -443,22 +477,22 @@ pub(super) fn surfaces(a: View<'_>, b: View<'_>, place: Pose) -> Nearest {
     };
     match (a, b) {
         (View::Mesh(p), View::Mesh(q)) => p.search_pairs(q, &|x| place.point(x), &mut each),
-        (View::Mesh(p), View::Hull { facets, .. }) => {
+        (View::Mesh(p), View::Hull { .. } | View::Facet { .. }) => {
             let (centre, radius) = b.ball();
             let centre = place.point(centre);
             p.search(f64::INFINITY, &|x| (x - centre).norm() - radius, &mut |s| {
-                (0..facets.len()).map(|t| each(s, t)).fold(f64::INFINITY, f64::min)
+                b.triangles().map(|t| each(s, t)).fold(f64::INFINITY, f64::min)
             });
         }
-        (View::Hull { facets, .. }, View::Mesh(q)) => {
+        (View::Hull { .. } | View::Facet { .. }, View::Mesh(q)) => {
             let (centre, radius) = a.ball();
             q.search(f64::INFINITY, &|x| (place.point(x) - centre).norm() - radius, &mut |t| {
-                (0..facets.len()).map(|s| each(s, t)).fold(f64::INFINITY, f64::min)
+                a.triangles().map(|s| each(s, t)).fold(f64::INFINITY, f64::min)
             });
         }
-        (View::Hull { facets: p, .. }, View::Hull { facets: q, .. }) => {
-            for s in 0..p.len() {
-                for t in 0..q.len() {
+        (View::Hull { .. } | View::Facet { .. }, View::Hull { .. } | View::Facet { .. }) => {
+            for s in a.triangles() {
+                for t in b.triangles() {
                     each(s, t);
                 }
             }
@@ -472,16 +506,16 @@ pub(super) fn surfaces(a: View<'_>, b: View<'_>, place: Pose) -> Nearest {
         view.is_closed() && p.is_some_and(|p| view.nearest_to(p).distance < 0.0)
     };
     let back = place.inverse();
-    let first = a.points().first().map(|p| back.point(*p));
-    if is_inside(a, b.points().first().map(|p| place.point(*p))) || is_inside(b, first) {
+    let first = a.corners().next().map(|(_, p)| back.point(p));
+    if is_inside(a, b.corners().next().map(|(_, p)| place.point(p))) || is_inside(b, first) {
         return best.overlapping(best.points[0]);
     }
     if best.distance.is_infinite() { Nearest { distance: f64::NAN, ..best } } else { best }
 }
 
 /// A core in another frame.
-pub(super) fn moved(core: &Core, pose: Pose) -> Core {
-    let circle = |c: &Circle| Circle { centre: pose.point(c.centre), axis: pose.rot * c.axis, ..*c };
+pub(super) fn moved<T: Real>(core: &Core<T>, pose: Pose<T>) -> Core<T> {
+    let circle = |c: &Circle<T>| Circle { centre: pose.point(c.centre), axis: pose.rot * c.axis, ..*c };
     match core {
         Core::Point(p) => Core::Point(pose.point(*p)),
         Core::Segment(ends) => Core::Segment(number::both(*ends, |p| pose.point(p))),

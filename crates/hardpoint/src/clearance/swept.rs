@@ -7,6 +7,7 @@ use crate::model::{ShapeId, ShapeKind, with_core};
 use crate::number;
 use crate::space::{Pose, Surface, Vec3};
 
+use super::block::Block;
 use super::core::Core;
 use super::nearest::{Nearest, from_point};
 use super::placed::PlacedShapes;
@@ -14,6 +15,8 @@ use super::surface::{View, moved};
 
 /// Number of points of the rim of a cylinder's cap.
 const RIM_POINTS: u32 = 24;
+/// Number of triangles of a mesh from which the distance of a point is computed, about.
+const TRIANGLES_OF_MESH: usize = 20;
 
 /// A shape at one pose.
 #[derive(Clone, Debug)]
@@ -31,6 +34,7 @@ enum Solid {
     Hull {
         points: Vec<Vec3>,
         facets: Vec<[u32; 3]>,
+        block: Option<Block>,
     },
     /// With the pose of the reference in the frame of the mesh.
     Mesh {
@@ -45,8 +49,8 @@ impl ShapeAtPose {
         let into = reference.inverse();
         let solid = match &placed.model.shapes[shape.0].kind {
             ShapeKind::Hull { points, facets } => {
-                let points = placed.points(points).into_iter().map(|p| into.point(p)).collect();
-                Solid::Hull { points, facets: facets.clone() }
+                let points: Vec<Vec3> = placed.points(points).into_iter().map(|p| into.point(p)).collect();
+                Solid::Hull { block: Block::of(&points), points, facets: facets.clone() }
             }
             ShapeKind::Mesh { body, surface } => {
                 let inverse = into.compose(placed.bodies[body.0]).inverse();
@@ -67,7 +71,9 @@ impl ShapeAtPose {
     pub fn distance_from(&self, p: Vec3) -> f64 {
         let of_core = match &self.solid {
             Solid::Core(core) => core.distance_from(p),
-            Solid::Hull { points, facets } => View::Hull { points, facets }.distance_from(p),
+            Solid::Hull { points, facets, block } => {
+                View::Hull { points, facets, block: *block }.distance_from(p)
+            }
             Solid::Mesh { surface, inverse } => View::Mesh(surface).distance_from(inverse.point(p)),
         };
         of_core - self.round
@@ -78,10 +84,21 @@ impl ShapeAtPose {
         let of = |near: &Nearest| near.points[1] + near.gradient() * (self.round + margin);
         match &self.solid {
             Solid::Core(core) => of(&from_point(p, core)),
-            Solid::Hull { points, facets } => of(&View::Hull { points, facets }.nearest_to(p)),
+            Solid::Hull { points, facets, block } => {
+                of(&View::Hull { points, facets, block: *block }.nearest_to(p))
+            }
             Solid::Mesh { surface, inverse } => {
                 inverse.inverse().point(of(&View::Mesh(surface).nearest_to(inverse.point(p))))
             }
+        }
+    }
+
+    /// Number of triangles from which the distance of a point is computed, about; 1 of other solids.
+    pub fn triangles_per_distance(&self) -> usize {
+        match &self.solid {
+            Solid::Hull { facets, block: None, .. } => facets.len(),
+            Solid::Mesh { .. } => TRIANGLES_OF_MESH,
+            Solid::Core(_) | Solid::Hull { block: Some(_), .. } => 1,
         }
     }
 

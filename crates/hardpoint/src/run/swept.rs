@@ -104,6 +104,11 @@ impl SweptShape {
         self.poses.first().map_or(0.0, ShapeAtPose::round)
     }
 
+    /// Number of triangles from which a distance is computed, about; 1 of other solids.
+    pub fn triangles_per_distance(&self) -> usize {
+        self.poses.first().map_or(1, ShapeAtPose::triangles_per_distance)
+    }
+
     /// Number of corners at all poses.
     pub fn corner_count(&self) -> usize {
         self.poses.first().map_or(0, |pose| pose.corners().len()) * self.len()

@@ -17,8 +17,8 @@ pub use mat3::Mat3;
 pub(crate) use opening::Opening;
 pub use pose::Pose;
 pub use quat::Quat;
+pub(crate) use surface::{NearestTriangle, distinct, is_behind, is_pierced};
 pub use surface::{Surface, TrianglePart, hull, nearest_of_triangle, open_edges, overlap_of_parts};
-pub(crate) use surface::{distinct, is_pierced};
 pub use twist::{Twist, Wrench};
 pub use vec3::Vec3;
 

@@ -201,18 +201,18 @@ impl Surface {
         found.or_else(|| within(self, other)).or_else(|| within(other, self))
     }
 
+    /// Distance of a point from the nearest triangle, the nearest point, and the part of the triangle that it lies on;
+    /// `None` without triangles.
+    pub(crate) fn nearest_to(&self, p: Vec3) -> Option<(f64, Vec3, TrianglePart)> {
+        let mut best = NearestTriangle::to(p);
+        let each = &mut |t: usize| best.visit(self.corners(t), self.triangles[t]);
+        self.search(f64::INFINITY, &|q| (q - p).norm(), each);
+        best.found
+    }
+
     /// True if a point is inside.
     fn contains(&self, p: Vec3) -> bool {
-        let mut best = (f64::INFINITY, false);
-        self.search(f64::INFINITY, &|q| (q - p).norm(), &mut |t| {
-            let (q, part) = nearest_of_triangle(p, self.corners(t), self.triangles[t]);
-            let apart = (q - p).norm();
-            if apart < best.0 {
-                best = (apart, self.is_inside(p, part, q));
-            }
-            apart
-        });
-        best.1
+        self.nearest_to(p).is_some_and(|(_, q, part)| self.is_inside(p, part, q))
     }
 
     fn add_normals(&mut self) {
@@ -345,6 +345,46 @@ fn grow(vertices: &[Vec3], triangles: &mut [[u32; 3]], first: usize, nodes: &mut
     k
 }
 
+/// True if all corners of a triangle are at least this far from some points along n, whose length is that distance: the
+/// triangle is no nearer.
+pub(crate) fn is_behind(points: &[Vec3], corners: [Vec3; 3], n: Vec3, distance: f64) -> bool {
+    let lowest = points.iter().map(|p| n.dot(*p)).fold(f64::INFINITY, f64::min);
+    let highest = corners.iter().map(|v| n.dot(*v)).fold(f64::NEG_INFINITY, f64::max);
+    distance > 0.0 && lowest - highest >= distance * distance
+}
+
+/// The nearest of the triangles that were visited to a point.
+pub(crate) struct NearestTriangle {
+    p: Vec3,
+    /// Distance, the nearest point, and the part of its triangle that it lies on.
+    pub found: Option<(f64, Vec3, TrianglePart)>,
+}
+
+impl NearestTriangle {
+    pub fn to(p: Vec3) -> Self {
+        Self { p, found: None }
+    }
+
+    /// Visits a triangle; returns its distance, or one that it is not below if that of another triangle is less.
+    pub fn visit(&mut self, corners: [Vec3; 3], ids: [u32; 3]) -> f64 {
+        let p = self.p;
+        if let Some((apart, ..)) = self.found.filter(|(apart, q, _)| is_behind(&[p], corners, p - *q, *apart))
+        {
+            return apart;
+        }
+        let (q, part) = nearest_of_triangle(p, corners, ids);
+        let apart = (q - p).norm();
+        if self.found.is_none_or(|found| apart < found.0) {
+            self.found = Some((apart, q, part));
+        }
+        apart
+    }
+}
+
+/// Sine of the angle from an edge, seen along the normal, below which a point is over the edge: round-off. Such points
+/// are nearest to the face, which may go on beyond the edge.
+const OVER_EDGE: f64 = 1e-13;
+
 /// The nearest point of a triangle to a point, and the part that it lies on.
 pub fn nearest_of_triangle(p: Vec3, [a, b, c]: [Vec3; 3], [i, j, k]: [u32; 3]) -> (Vec3, TrianglePart) {
     let edge = |from: Vec3, to: Vec3, ends: [u32; 2]| {
@@ -361,8 +401,13 @@ pub fn nearest_of_triangle(p: Vec3, [a, b, c]: [Vec3; 3], [i, j, k]: [u32; 3]) -
     };
     let normal = (b - a).cross(c - a);
     // Inside all three edges, seen along the normal.
-    let inside = |from: Vec3, to: Vec3| normal.dot((to - from).cross(p - from)) > 0.0;
-    if inside(a, b) && inside(b, c) && inside(c, a) {
+    let inside = |from: Vec3, to: Vec3| {
+        let (e, v) = (to - from, p - from);
+        let beyond = -normal.dot(e.cross(v));
+        let square = |v: Vec3| v.dot(v);
+        beyond < 0.0 || beyond * beyond <= OVER_EDGE * OVER_EDGE * square(normal) * square(e) * square(v)
+    };
+    if inside(a, b) && inside(b, c) && inside(c, a) && normal.dot(normal) > 0.0 {
         let height = normal.dot(p - a) / normal.dot(normal);
         return (p - normal * height, TrianglePart::Face([i, j, k]));
     }
@@ -453,14 +498,7 @@ mod tests {
             (Vec3::new(3.0, 3.0, 1.0), 2.0_f64.sqrt()),
             (Vec3::new(-1.0, -1.0, -1.0), 3.0_f64.sqrt()),
         ] {
-            let mut best = (f64::INFINITY, Vec3::ZERO, TrianglePart::Vertex(0));
-            cube.search(f64::INFINITY, &|q| (q - p).norm(), &mut |t| {
-                let (q, part) = nearest_of_triangle(p, cube.corners(t), cube.triangles()[t]);
-                if (q - p).norm() < best.0 {
-                    best = ((q - p).norm(), q, part);
-                }
-                (q - p).norm()
-            });
+            let best = cube.nearest_to(p).unwrap();
             let sign = if cube.is_inside(p, best.2, best.1) { -1.0 } else { 1.0 };
             assert!((sign * best.0 - expected).abs() < 1e-14, "{p:?}: {best:?}");
         }
