@@ -169,9 +169,7 @@ fn reason_in_words(model: &Model, reason: ProofFailure) -> String {
             "the cores of the shapes meet there, and nothing is proved of how deep they are".into()
         }
         ProofFailure::WithinRing => "rings around other shapes than rods and balls have no bounds".into(),
-        ProofFailure::Mesh { shape } => {
-            format!("`{}` is a mesh, for which no bounds are computed", model.shapes[shape.0].name)
-        }
+        ProofFailure::Meshes => "both shapes are meshes, for which no bounds are computed".into(),
         ProofFailure::Interrupted => "the proof was interrupted".into(),
         ProofFailure::Motion(failure) => {
             format!("the motion has no bounds there: {}", motion_in_words(model, failure))

@@ -25,8 +25,9 @@ const BRUTE: f64 = 1e-13;
 const TOUCH: f64 = 1e-9;
 /// Samples of the distance of meshes over the motion.
 const DENSE: usize = 500;
-/// Bounds of the proof of one pair, at most.
+/// Bounds of the proof of one pair, at most, and of one with a mesh.
 const MOST_BOUNDS: usize = 200;
+const MOST_BOUNDS_OF_MESH: usize = 4_000;
 /// Points of one refinement of a sampled minimum, and the number of refinements: each is narrower by half of them.
 const REFINED: usize = 24;
 const REFINEMENTS: usize = 7;
@@ -185,6 +186,25 @@ struct Tally {
     bounds: Vec<usize>,
 }
 
+impl Tally {
+    fn print(&mut self, of: &str) {
+        self.bounds.sort_unstable();
+        let bounds = &self.bounds;
+        println!(
+            "{of}; proved {}, cores meet {}, unresolved {}, within a ring {}, motion {}; \
+             bounds {} in the median, {} at 90 %, {} at most",
+            self.proved,
+            self.meeting,
+            self.unresolved,
+            self.within_ring,
+            self.of_motion,
+            bounds[bounds.len() / 2],
+            bounds[bounds.len() * 9 / 10],
+            bounds[bounds.len() - 1]
+        );
+    }
+}
+
 #[test]
 fn least_distances_of_random_struts_are_proved_and_greater_claims_are_refused() {
     // `HARDPOINT_STRUTS=1000` sets their number, each against 100,000 samples; `HARDPOINT_SEED` draws others.
@@ -212,23 +232,10 @@ fn least_distances_of_random_struts_are_proved_and_greater_claims_are_refused() 
                 println!("{what}: {text}");
                 failures.push(format!("{what}: {text}"));
             };
-            examine(&model, pair, samples, &mut prover, &mut tally, &mut fail);
+            examine(&model, pair, (samples, MOST_BOUNDS), &mut prover, &mut tally, &mut fail);
         }
     }
-    tally.bounds.sort_unstable();
-    let bounds = &tally.bounds;
-    println!(
-        "{tried} tried, {solved} solved; proved {}, cores meet {}, unresolved {}, within a ring {}, motion {}; \
-         bounds {} in the median, {} at 90 %, {} at most",
-        tally.proved,
-        tally.meeting,
-        tally.unresolved,
-        tally.within_ring,
-        tally.of_motion,
-        bounds[bounds.len() / 2],
-        bounds[bounds.len() * 9 / 10],
-        bounds[bounds.len() - 1]
-    );
+    tally.print(&format!("{tried} tried, {solved} solved"));
     assert!(failures.is_empty(), "{} failures:\n{}", failures.len(), failures.join("\n"));
 }
 
@@ -236,7 +243,7 @@ fn least_distances_of_random_struts_are_proved_and_greater_claims_are_refused() 
 fn examine(
     model: &Model,
     pair: &PairClearance,
-    samples: usize,
+    (samples, most_bounds): (usize, usize),
     prover: &mut hardpoint::run::ClearanceProver<'_>,
     tally: &mut Tally,
     fail: &mut impl FnMut(String),
@@ -269,7 +276,7 @@ fn examine(
         ClearanceProof::Proved { bounds, .. } => {
             tally.proved += 1;
             tally.bounds.push(bounds);
-            if bounds > MOST_BOUNDS {
+            if bounds > most_bounds {
                 fail(format!("{bounds} bounds"));
             }
             return;
@@ -287,7 +294,7 @@ fn examine(
         ClearanceProof::NotProved { reason: ProofFailure::WithinRing, .. } => tally.within_ring += 1,
         ClearanceProof::NotProved { reason: ProofFailure::Motion(_), .. } => tally.of_motion += 1,
         ClearanceProof::NotProved {
-            reason: ProofFailure::Nearer { .. } | ProofFailure::Mesh { .. } | ProofFailure::Interrupted,
+            reason: ProofFailure::Nearer { .. } | ProofFailure::Meshes | ProofFailure::Interrupted,
             ..
         } => fail(format!("least {least} at {}: {proof:?}", lowest.at.time)),
     }
@@ -381,6 +388,49 @@ end = 1.0
 steps = 16
 "#
     )
+}
+
+/// Shapes that move past a lump, or into it.
+const BESIDE_LUMP: [&str; 6] = [
+    "sphere = \"B\", radius = 6",
+    "capsule = [\"B\", [-90, 15, 25]], radius = 2",
+    "cylinder = [\"B\", [-85, 5, 10]], radius = 9, round = 1",
+    "box = [12, 14, 9], frame = { position = \"B\" }, round = 1",
+    "plane = \"B\", normal = [1, 0.2, 0.1]",
+    "ring = \"B\", axis = [1, 1, 0.3], radius = 12, round = 1",
+];
+
+#[test]
+fn least_distances_of_random_meshes_are_proved_and_greater_claims_are_refused() {
+    // `HARDPOINT_LUMPS=1000` sets their number, each against 100,000 samples.
+    let (most, samples) = number_of("HARDPOINT_LUMPS", 18);
+    let mut next = numbers(seed_or(382));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("lumps.toml");
+    let (mut tally, mut failures) = (Tally::default(), Vec::new());
+    for n in 0..most {
+        let (points, mut triangles) = lump(&mut next, 20.0, 1 + n % 3);
+        // Every fourth one is open.
+        triangles.truncate(triangles.len() - usize::from(n % 4 == 3));
+        std::fs::write(folder.path().join("a.obj"), object_file(&(points, triangles))).unwrap();
+        let shape = BESIDE_LUMP[n % BESIDE_LUMP.len()];
+        let between = if n % 2 == 0 { "[\"a\", \"b\"]" } else { "[\"b\", \"a\"]" };
+        let text = lumps(&mut next)
+            .replace("mesh = { file = \"b.obj\", frame = \"body\" }", shape)
+            .replace("[\"a\", \"b\"]", between);
+        std::fs::write(&path, &text).unwrap();
+        let model = hardpoint_file::read(&path).unwrap_or_else(|e| panic!("{e}\n{text}")).model;
+        let analysis = Analysis::new(&model).unwrap();
+        let mut prover = analysis.clearance_prover(&[]).unwrap();
+        let found = analysis.clearances(&[]);
+        let (bounds, mut fail) =
+            (MOST_BOUNDS_OF_MESH, |text: String| failures.push(format!("{n}, {shape}: {text}")));
+        examine(&model, &found.pairs[0], (samples, bounds), &mut prover, &mut tally, &mut fail);
+    }
+    tally.print(&format!("{most} meshes"));
+    // Rings around a mesh have no bounds, and some shapes go into theirs.
+    assert!(2 * tally.proved > most, "{} of {most}", tally.proved);
+    assert!(failures.is_empty(), "{} failures:\n{}", failures.len(), failures.join("\n"));
 }
 
 /// The nearest distance of two segments: with the clamped parameters of both, by Ericson's algorithm.

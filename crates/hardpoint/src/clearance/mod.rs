@@ -24,7 +24,9 @@ mod tests;
 mod through_ring;
 
 pub(crate) use bodies::{ChangingBodies, MovingBodies};
+pub(crate) use core::Core;
 pub(crate) use gradient::{DistanceGradient, GradientBatch, moves_points_only};
+pub(crate) use nearest::Nearest;
 pub(crate) use placed::{NearestPair, PlacedShapes};
 pub(crate) use separation::{Direction, EnclosedSolid, lower_bound, ring_bound, separations};
 pub(crate) use swept::ShapeAtPose;

@@ -106,11 +106,14 @@ impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
         (centre, radius + round)
     }
 
-    /// Corners of a hull, in global coordinates; none of another shape.
-    pub fn corners(&self, shape: ShapeId) -> Vec<Vec3<T>> {
+    /// Corners of a hull or of a triangle of a mesh, in global coordinates; none of another shape.
+    pub fn corners(&self, shape: ShapeId, triangle: Option<usize>) -> Vec<Vec3<T>> {
         match &self.model.shapes[shape.0].kind {
             ShapeKind::Hull { points, .. } => points.iter().map(|p| self.point(*p)).collect(),
-            ShapeKind::Mesh { .. } | with_core!() => Vec::new(),
+            ShapeKind::Mesh { body, surface } => triangle.map_or_else(Vec::new, |t| {
+                number::each(&surface.corners(t), |p| self.bodies.point(*body, p.spread())).to_vec()
+            }),
+            with_core!() => Vec::new(),
         }
     }
 
@@ -127,6 +130,11 @@ impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
 
     /// The nearest points of the cores of two shapes, with the distance of the cores.
     pub fn nearest_of_cores(&self, shapes: [ShapeId; 2]) -> Nearest {
+        self.nearest_of_parts(shapes, [None; 2])
+    }
+
+    /// The same, of one triangle of a mesh if its number is given.
+    pub fn nearest_of_parts(&self, shapes: [ShapeId; 2], triangles: [Option<usize>; 2]) -> Nearest {
         let kinds = number::both(shapes, |s| &self.model.shapes[s.0].kind);
         let cores = number::both(shapes, |s| self.plain_core(s));
         let corners = number::both(kinds, |kind| match kind {
@@ -135,7 +143,10 @@ impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
         });
         // Surfaces in the frame in which their points are known, and that frame.
         let views = number::both([0, 1], |k| match kinds[k] {
-            ShapeKind::Mesh { body, surface } => Some((View::Mesh(surface), self.bodies.pose(*body))),
+            ShapeKind::Mesh { body, surface } => {
+                let one = triangles[k].map(|triangle| View::Facet { surface, triangle });
+                Some((one.unwrap_or(View::Mesh(surface)), self.bodies.pose(*body)))
+            }
             ShapeKind::Hull { facets, .. } => Some((View::hull(&corners[k], facets), Pose::IDENTITY)),
             with_core!() => None,
         });
@@ -163,6 +174,49 @@ impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
             (placed.value(), less.value())
         };
         near.signed([plain(0), plain(1)])
+    }
+
+    /// Triangles of mesh `of` of two shapes that are no farther than `reach` from the core of the other one, or a
+    /// few that are a little farther; `None` if there are more than `most` of them, or the other one is a mesh.
+    pub fn triangles_within(
+        &self,
+        shapes: [ShapeId; 2],
+        of: usize,
+        reach: f64,
+        most: usize,
+    ) -> Option<Vec<usize>> {
+        let [mesh, other] = [shapes[of], shapes[1 - of]].map(|s| &self.model.shapes[s.0].kind);
+        let ShapeKind::Mesh { body, surface } = mesh else { return None };
+        let into = self.bodies.pose(*body).inverse();
+        let core = self.plain_core(shapes[1 - of]).map(|core| moved(&core, into));
+        let points: Vec<Vec3>;
+        let hull = match other {
+            ShapeKind::Hull { points: of_hull, facets } => {
+                points = self.points(of_hull).into_iter().map(|p| into.point(p)).collect();
+                Some(View::hull(&points, facets))
+            }
+            ShapeKind::Mesh { .. } | with_core!() => None,
+        };
+        let apart = |q: Vec3| match (&core, &hull) {
+            (Some(core), _) => core.distance_from(q),
+            (None, Some(hull)) => hull.distance_from(q),
+            (None, None) => f64::NEG_INFINITY,
+        };
+        let mut found = Vec::new();
+        surface.search(reach, &apart, &mut |t| {
+            let [a, b, c] = surface.corners(t);
+            let centre = (a + b + c) * (1.0 / 3.0);
+            let radius = [a, b, c].iter().map(|p| (*p - centre).norm()).fold(0.0, f64::max);
+            // More than that are not gathered.
+            if found.len() > most {
+                return f64::NEG_INFINITY;
+            }
+            if apart(centre) - radius <= reach {
+                found.push(t);
+            }
+            f64::INFINITY
+        });
+        (found.len() <= most).then_some(found)
     }
 
     /// True if two segments that cross leave the plane that they are in; false where nothing has rates.

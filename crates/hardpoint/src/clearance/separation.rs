@@ -16,12 +16,13 @@
 
 use crate::law::TimeJet;
 use crate::number::{self, Interval, Jet};
-use crate::space::{Real, Vec3};
+use crate::space::{Pose, Real, Vec3};
 
 use super::circle::Circle;
 use super::core::Core;
 use super::feature::Feature;
 use super::nearest::Nearest;
+use super::surface::moved;
 use super::through_ring::{EnclosedPair, PlaceOnSegment, RingBound};
 
 /// A convex solid with bounds of its place and rates.
@@ -31,6 +32,67 @@ pub(crate) enum EnclosedSolid {
     Core(Core<TimeJet<Interval>>),
     /// The hull of points.
     Hull(Vec<Vec3<TimeJet<Interval>>>),
+}
+
+impl EnclosedSolid {
+    /// The solid in another frame.
+    pub fn moved(&self, pose: Pose<TimeJet<Interval>>) -> Self {
+        match self {
+            Self::Core(core) => Self::Core(moved(core, pose)),
+            Self::Hull(points) => Self::Hull(points.iter().map(|p| pose.point(*p)).collect()),
+        }
+    }
+
+    /// Corners of a facet, in order as seen from the side to which a vector points: a triangle has two of them.
+    fn facet(&self, corners: [u32; 3], towards: Vec3) -> [u32; 3] {
+        let Self::Hull(points) = self else { return corners };
+        let [a, b, c] = points[..] else { return corners };
+        let [a, b, c] = [a, b, c].map(|p| p.map(|x| x.value().middle()));
+        if (b - a).cross(c - a).dot(towards) < 0.0 { [0, 2, 1] } else { [0, 1, 2] }
+    }
+
+    /// How far any point of the solid is at most from its place at a time within an interval of time, for which
+    /// `narrow` has its bounds, rounded to plain numbers. `since` is the time since then, and `size` the distance up to
+    /// which a half-space counts from its point.
+    pub fn displacement(&self, narrow: &Self, since: Interval, size: f64) -> f64 {
+        let by = |x: TimeJet<Interval>, narrow: TimeJet<Interval>| {
+            x.narrowed(narrow, since).value() - Interval::constant(narrow.value().middle())
+        };
+        let moves = |v: Vec3<TimeJet<Interval>>, narrow: Vec3<TimeJet<Interval>>| {
+            let square = |k: usize| by(v[k], narrow[k]).square();
+            (square(0) + square(1) + square(2)).sqrt()
+        };
+        let farthest = |all: &mut dyn Iterator<Item = Interval>| {
+            Interval::constant(all.map(|moved| moved.high).fold(0.0, f64::max))
+        };
+        // A direction that turns moves what is `reach` from its foot by at most `reach` times its change.
+        let along = |foot: Interval, axis: Interval, reach: Interval| foot + axis * reach;
+        let most = match (self, narrow) {
+            (Self::Core(Core::Point(p)), Self::Core(Core::Point(q))) => moves(*p, *q),
+            (Self::Core(Core::Segment([a, b])), Self::Core(Core::Segment([c, d]))) => {
+                farthest(&mut [moves(*a, *c), moves(*b, *d)].into_iter())
+            }
+            (Self::Core(Core::Circle(p)), Self::Core(Core::Circle(q))) => {
+                along(moves(p.centre, q.centre), moves(p.axis, q.axis), p.radius.value())
+            }
+            (
+                Self::Core(Core::Cylinder { middle: p, half_width: w }),
+                Self::Core(Core::Cylinder { middle: q, half_width: v }),
+            ) => {
+                // One between points of two bodies grows longer.
+                let longer = Real::abs(by(*w, *v));
+                let reach = p.radius.value() + w.value();
+                along(moves(p.centre, q.centre) + longer, moves(p.axis, q.axis), reach)
+            }
+            (
+                Self::Core(Core::HalfSpace { point: p, normal: n }),
+                Self::Core(Core::HalfSpace { point: q, normal: m }),
+            ) => along(moves(*p, *q), moves(*n, *m), Interval::constant(size)),
+            (Self::Hull(p), Self::Hull(q)) => farthest(&mut p.iter().zip(q).map(|(p, q)| moves(*p, *q))),
+            (Self::Core(_) | Self::Hull(_), _) => Interval::ENTIRE,
+        };
+        most.high
+    }
 }
 
 /// Unit vector from the first core to the second one, over time.
@@ -78,7 +140,10 @@ impl Direction {
         }
         (0..2).find_map(|of| match near.features[of] {
             Feature::Face(side) => Some(Self::Normal { of, side }),
-            Feature::Facet(corners) => Some(Self::Facet { of, corners }),
+            Feature::Facet(corners) => {
+                let towards = near.points[1 - of] - near.points[of];
+                Some(Self::Facet { of, corners: solids[of].facet(corners, towards) })
+            }
             Feature::Point(_)
             | Feature::Line
             | Feature::Circle(_)

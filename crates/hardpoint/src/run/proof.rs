@@ -9,7 +9,8 @@ use std::collections::HashMap;
 use std::rc::Rc;
 
 use crate::clearance::{
-    Direction, EnclosedSolid, PlaceOnSegment, PlacedShapes, lower_bound, ring_bound, separations,
+    Core, Direction, EnclosedSolid, Nearest, PlaceOnSegment, PlacedShapes, lower_bound, ring_bound,
+    separations,
 };
 use crate::design::BodyFixed;
 use crate::law::TimeJet;
@@ -18,7 +19,7 @@ use crate::motion::parts::PlanGeometry;
 use crate::motion::stepper::Stepper;
 use crate::motion::tube::{Instant, Slab, SolvedPosition};
 use crate::motion::{ProvenMotion, Stop, StopKind, TubeFailure, advance};
-use crate::number::{Interval, Jet, Rates};
+use crate::number::{self, Interval, Jet, Rates};
 use crate::space::{Mat3, Pose, Real, Vec3};
 
 use super::analysis::Analysis;
@@ -96,6 +97,10 @@ const SHORTEST: f64 = 1e-9;
 /// that is isolated needs a few tens; one over a part of the motion, as between points of one body, would need
 /// thousands.
 const MOST_BOUNDS: usize = 200;
+/// Bounds of one proof of a mesh, at most: each is one of all of it over a part of the motion, or one of a triangle.
+const MOST_BOUNDS_OF_MESH: usize = 4_000;
+/// Triangles of a mesh that are bounded one by one over a part of the motion; with more of them it is halved.
+const MOST_TRIANGLES: usize = 32;
 /// A distance below the claim by more than this fraction of the mechanism's size refutes it: far above round-off.
 const BELOW: f64 = 1e-10;
 /// Steps of Newton's method to the time at which a distance is stationary.
@@ -143,11 +148,8 @@ pub enum ProofFailure {
     CoresMeet,
     /// A ring is nearest from the inside, where only points and segments have a bound.
     WithinRing,
-    /// A shape is a mesh, which has no bounds by separation.
-    Mesh {
-        /// The shape.
-        shape: ShapeId,
-    },
+    /// Both shapes are meshes, which have no bounds by separation.
+    Meshes,
     /// The motion has no proven bounds there.
     Motion(TubeFailure),
     /// The caller [ended](Analysis::ended_by) the proof.
@@ -186,10 +188,7 @@ struct Place {
     /// Unit vector along the nearest points of the cores, with its first two rates, for plain numbers; `None` where
     /// they meet.
     direction: Option<[Vec3; 3]>,
-    /// Distance of the cores, for plain numbers.
-    distance: f64,
-    /// True if the cores are segments that cross, and the distance is the way out of each other within their plane.
-    cross: bool,
+    distance: Distance,
     of_features: Option<Direction>,
     /// Place on a segment that is nearest to a circle.
     on_segment: Option<PlaceOnSegment>,
@@ -198,6 +197,7 @@ struct Place {
 /// A part of the motion with two shapes.
 struct Part<'p> {
     slab: &'p Slab,
+    triangles: Triangles,
     solids: [EnclosedSolid; 2],
     /// Start, middle and end.
     places: [Rc<Place>; 3],
@@ -252,28 +252,33 @@ impl<'a> ClearanceProver<'a> {
         claim: f64,
         [start, end]: [f64; 2],
     ) -> ClearanceProof {
-        let is_mesh = |s: &ShapeId| matches!(self.model.shapes[s.0].kind, ShapeKind::Mesh { .. });
-        if let Some(shape) = shapes.into_iter().find(is_mesh) {
-            let (bound, reason) = (f64::NEG_INFINITY, ProofFailure::Mesh { shape });
-            return ClearanceProof::NotProved { from: start, to: end, bound, reason };
-        }
+        let is_mesh = |s: ShapeId| matches!(self.model.shapes[s.0].kind, ShapeKind::Mesh { .. });
+        let mesh = match shapes.map(is_mesh) {
+            [false, false] => None,
+            [true, false] => Some(0),
+            [false, true] => Some(1),
+            [true, true] => {
+                let (bound, reason) = (f64::NEG_INFINITY, ProofFailure::Meshes);
+                return ClearanceProof::NotProved { from: start, to: end, bound, reason };
+            }
+        };
         let mut ends: Vec<f64> = self.motion.times().filter(|t| start < *t && *t < end).collect();
         ends.extend(self.motion.cuts(start, end));
         ends.extend([start, end]);
         ends.sort_by(f64::total_cmp);
         ends.dedup();
-        let mut pair = PairProof { prover: self, shapes, claim: 0.0, places: HashMap::new() };
+        let (places, distances) = (HashMap::new(), HashMap::new());
+        let mut pair = PairProof { prover: self, shapes, mesh, claim: 0.0, bounds: 0, places, distances };
         // Distance of the cores, rounded up.
         pair.claim = (Interval::constant(claim) + pair.rounds()).high;
-        let (mut slabs, mut bounds) = (0, 0);
+        let mut slabs = 0;
         // The next part is the last one.
         let mut parts: Vec<[f64; 2]> = ends.windows(2).rev().map(|pair| [pair[0], pair[1]]).collect();
         if parts.is_empty() {
             parts.push([start, end]);
         }
-        let most = MOST_BOUNDS.max(2 * parts.len());
+        let most = if mesh.is_some() { MOST_BOUNDS_OF_MESH } else { MOST_BOUNDS }.max(2 * parts.len());
         while let Some([from, to]) = parts.pop() {
-            bounds += 1;
             if pair.prover.analysis.is_ended() {
                 let (bound, reason) = (f64::NEG_INFINITY, ProofFailure::Interrupted);
                 return ClearanceProof::NotProved { from, to, bound, reason };
@@ -291,12 +296,12 @@ impl<'a> ClearanceProver<'a> {
             let halves = from < middle
                 && middle < to
                 && to - from > SHORTEST * (end - start)
-                && bounds + parts.len() + 2 <= most;
+                && pair.bounds + parts.len() + 2 <= most;
             let may_pass = match failed.1 {
                 ProofFailure::Nearer { .. }
                 | ProofFailure::CoresMeet
                 | ProofFailure::WithinRing
-                | ProofFailure::Mesh { .. }
+                | ProofFailure::Meshes
                 | ProofFailure::Interrupted => false,
                 ProofFailure::Unresolved => true,
                 ProofFailure::Motion(reason) => reason.may_be_halved(),
@@ -317,17 +322,40 @@ impl<'a> ClearanceProver<'a> {
             }
             parts.extend([[middle, to], [from, middle]]);
         }
-        ClearanceProof::Proved { slabs, bounds }
+        ClearanceProof::Proved { slabs, bounds: pair.bounds }
     }
 }
+
+/// Numbers of the triangles of meshes that stand for two shapes; `None` for the shape itself.
+type Triangles = [Option<usize>; 2];
 
 /// Proof of one claim.
 struct PairProof<'p, 'a> {
     prover: &'p mut ClearanceProver<'a>,
     shapes: [ShapeId; 2],
+    /// The one that is a mesh.
+    mesh: Option<usize>,
     /// Least distance of the cores, m.
     claim: f64,
-    places: HashMap<*const Instant, Rc<Place>>,
+    /// Bounds that were computed.
+    bounds: usize,
+    places: HashMap<(*const Instant, Triangles), Rc<Place>>,
+    /// Distances of a mesh and the other core.
+    distances: HashMap<*const Instant, Distance>,
+}
+
+/// Distance of the cores of two shapes at one time, for plain numbers.
+#[derive(Clone, Copy)]
+struct Distance {
+    value: f64,
+    /// True if the cores are segments that cross, and the distance is the way out of each other within their plane.
+    cross: bool,
+}
+
+impl Distance {
+    fn of(near: &Nearest) -> Self {
+        Self { value: near.distance, cross: near.is_way_out_in_plane() }
+    }
 }
 
 impl PairProof<'_, '_> {
@@ -338,21 +366,26 @@ impl PairProof<'_, '_> {
         PlacedShapes { model, fixed: constants, bodies: poses }.rounds(self.shapes).value()
     }
 
-    fn solids(&self, poses: &[Pose<TimeJet<Interval>>]) -> [EnclosedSolid; 2] {
-        let ClearanceProver { model, constants, .. } = &*self.prover;
-        let placed = PlacedShapes { model, fixed: constants, bodies: poses };
-        self.shapes.map(|shape| match placed.core(shape) {
-            Some(core) => EnclosedSolid::Core(core),
-            None => EnclosedSolid::Hull(placed.corners(shape)),
-        })
+    fn solids(&self, poses: &[Pose<TimeJet<Interval>>], triangles: Triangles) -> [EnclosedSolid; 2] {
+        number::both([0, 1], |k| self.solid(poses, self.shapes[k], triangles[k]))
     }
 
-    /// The shapes at one time.
-    fn place(&mut self, instant: &Rc<Instant>) -> Rc<Place> {
-        if let Some(place) = self.places.get(&Rc::as_ptr(instant)) {
-            return place.clone();
+    fn solid(
+        &self,
+        poses: &[Pose<TimeJet<Interval>>],
+        shape: ShapeId,
+        triangle: Option<usize>,
+    ) -> EnclosedSolid {
+        let ClearanceProver { model, constants, .. } = &*self.prover;
+        let placed = PlacedShapes { model, fixed: constants, bodies: poses };
+        match placed.core(shape) {
+            Some(core) => EnclosedSolid::Core(core),
+            None => EnclosedSolid::Hull(placed.corners(shape, triangle)),
         }
-        let solids = self.solids(&instant.enclosure.poses);
+    }
+
+    /// Calls a function with the shapes at one time in plain numbers.
+    fn placed<R>(&self, instant: &Instant, with: impl FnOnce(&PlacedShapes<'_, Rates>) -> R) -> R {
         let middle = |x: TimeJet<Interval>| Jet([x.0[0], x.0[1], x.0[2]].map(Interval::middle));
         let plain: Vec<Pose<Rates>> = instant
             .enclosure
@@ -364,40 +397,116 @@ impl PairProof<'_, '_> {
             })
             .collect();
         let ClearanceProver { model, moving, .. } = &*self.prover;
-        let placed = PlacedShapes { model, fixed: moving, bodies: &plain[..] };
-        let near = placed.nearest_of_cores(self.shapes);
+        with(&PlacedShapes { model, fixed: moving, bodies: &plain[..] })
+    }
+
+    /// Distance of the cores at one time.
+    fn distance(&mut self, instant: &Rc<Instant>) -> Distance {
+        if self.mesh.is_none() {
+            return self.place(instant, [None; 2]).distance;
+        }
+        if let Some(known) = self.distances.get(&Rc::as_ptr(instant)) {
+            return *known;
+        }
+        let found = Distance::of(&self.placed(instant, |placed| placed.nearest_of_cores(self.shapes)));
+        self.distances.insert(Rc::as_ptr(instant), found);
+        found
+    }
+
+    /// The shapes at one time.
+    fn place(&mut self, instant: &Rc<Instant>, triangles: Triangles) -> Rc<Place> {
+        let key = (Rc::as_ptr(instant), triangles);
+        if let Some(place) = self.places.get(&key) {
+            return place.clone();
+        }
+        let solids = self.solids(&instant.enclosure.poses, triangles);
+        let (near, direction, on_segment) = self.placed(instant, |placed| {
+            let near = placed.nearest_of_parts(self.shapes, triangles);
+            let direction = placed.direction(self.shapes, &near);
+            (near, direction, placed.place_on_segment(self.shapes, &near))
+        });
         let rates = |n: Vec3<Rates>| [0, 1, 2].map(|order| n.map(|x| x.0[order]));
         let place = Rc::new(Place {
             instant: instant.clone(),
             of_features: Direction::of_features(solids.each_ref(), &near),
             solids,
-            direction: placed.direction(self.shapes, &near).map(rates),
-            distance: near.distance,
-            cross: near.is_way_out_in_plane(),
-            on_segment: placed.place_on_segment(self.shapes, &near),
+            direction: direction.map(rates),
+            distance: Distance::of(&near),
+            on_segment,
         });
-        self.places.insert(Rc::as_ptr(instant), place.clone());
+        self.places.insert(key, place.clone());
         place
     }
 
     /// Proven lower bound of the distance of the cores over a part of the motion.
     fn bound(&mut self, [from, to]: [f64; 2]) -> Result<f64, ProofFailure> {
+        self.bounds += 1;
         let slab = self.prover.motion.slab(from, to).map_err(ProofFailure::Motion)?;
-        let places = slab.instants.each_ref().map(|instant| self.place(instant));
-        for place in &places {
-            if place.distance < self.claim - BELOW * self.prover.size {
+        let distances = slab.instants.each_ref().map(|instant| self.distance(instant));
+        for (instant, distance) in slab.instants.iter().zip(distances) {
+            if distance.value < self.claim - BELOW * self.prover.size {
                 // Cores that only pass through each other have no depth: there is no way out within a plane that they
                 // leave.
-                let is_passing = place.cross && !places.iter().all(|place| place.cross);
+                let is_passing = distance.cross && !distances.iter().all(|distance| distance.cross);
                 if is_passing && self.claim <= 0.0 {
                     return Err(ProofFailure::CoresMeet);
                 }
-                let distance = place.distance - self.rounds().middle();
-                return Err(ProofFailure::Nearer { time: place.instant.time(), distance });
+                let distance = distance.value - self.rounds().middle();
+                return Err(ProofFailure::Nearer { time: instant.time(), distance });
             }
         }
+        let Some(mesh) = self.mesh else {
+            return Ok(self.bound_of_parts(&slab, [None; 2]));
+        };
+        // A core that is outside of a closed surface, and meets no triangle, stays there.
+        if !self.has_plane() && distances.iter().any(|distance| !(distance.value > 0.0)) {
+            return Err(ProofFailure::CoresMeet);
+        }
+        let reach = self.claim + self.displacement(&slab, mesh) + BELOW * self.prover.size;
+        let near = self.placed(&slab.instants[1], |placed| {
+            placed.triangles_within(self.shapes, mesh, reach, MOST_TRIANGLES)
+        });
+        let Some(near) = near else { return Ok(f64::NEG_INFINITY) };
+        let mut least = f64::INFINITY;
+        for triangle in near {
+            self.bounds += 1;
+            let mut triangles = [None; 2];
+            triangles[mesh] = Some(triangle);
+            least = least.min(self.bound_of_parts(&slab, triangles));
+            if least < self.claim {
+                break;
+            }
+        }
+        Ok(least)
+    }
+
+    /// How far any point of the other core is at most, in the frame of mesh `of`, from its place in the middle of a part
+    /// of the motion.
+    fn displacement(&self, slab: &Slab, of: usize) -> f64 {
+        let model = self.prover.model;
+        let [mesh, other] = [self.shapes[of], self.shapes[1 - of]];
+        let ShapeKind::Mesh { body, surface } = &model.shapes[mesh.0].kind else { return f64::INFINITY };
+        let middle = &slab.instants[1].enclosure;
+        let seen =
+            |poses: &[Pose<TimeJet<Interval>>]| self.solid(poses, other, None).moved(poses[body.0].inverse());
+        let (over, narrow) = (seen(&slab.poses), seen(&middle.poses));
+        // A plane counts as far as the mesh reaches.
+        let farthest = match &narrow {
+            EnclosedSolid::Core(Core::HalfSpace { point, .. }) => {
+                let (centre, radius) = surface.ball();
+                (point.map(|x| x.value().middle()) - centre).norm() + 2.0 * radius
+            }
+            EnclosedSolid::Core(_) | EnclosedSolid::Hull(_) => 0.0,
+        };
+        over.displacement(&narrow, slab.over - middle.over, farthest)
+    }
+
+    /// Proven lower bound of the distance of both cores, or of triangles of theirs, over a part of the motion.
+    fn bound_of_parts(&mut self, slab: &Slab, triangles: Triangles) -> f64 {
+        let places = slab.instants.each_ref().map(|instant| self.place(instant, triangles));
+        let Interval { low: from, high: to } = slab.over;
         let length = Interval::constant(to) - Interval::constant(from);
-        let part = Part { solids: self.solids(&slab.poses), slab: &slab, places, length };
+        let part = Part { solids: self.solids(&slab.poses, triangles), slab, triangles, places, length };
         let [start, middle, end] = part.places.each_ref();
         let mut best = f64::NEG_INFINITY;
         if let Some(direction) = middle.of_features {
@@ -406,14 +515,14 @@ impl PairProof<'_, '_> {
             best = self.better(best, found, true);
         }
         if best >= self.claim {
-            return Ok(best);
+            return best;
         }
         if let Some([n, ..]) = middle.direction {
             let found = part.bound(Direction::fixed(n), middle, self.claim);
             best = self.better(best, found, false);
         }
         if best >= self.claim {
-            return Ok(best);
+            return best;
         }
         if let (Some(at_start), Some(at_end)) = (start.direction, end.direction) {
             // Along the nearest points at both ends, so that nothing is lost where the distance falls or rises.
@@ -430,7 +539,7 @@ impl PairProof<'_, '_> {
             let found = self.through_ring(&part, [from, to]);
             best = self.better(best, found, false);
         }
-        Ok(best)
+        best
     }
 
     /// Bound of a segment and a circle around it.
@@ -485,7 +594,7 @@ impl PairProof<'_, '_> {
                 return part.bound(direction, &place, self.claim);
             }
             let instant = self.prover.motion.instant_within(from, next).ok()?;
-            place = self.place(&instant);
+            place = self.place(&instant, part.triangles);
         }
         None
     }
