@@ -51,9 +51,9 @@ impl EnclosedSolid {
         if (b - a).cross(c - a).dot(towards) < 0.0 { [0, 2, 1] } else { [0, 1, 2] }
     }
 
-    /// How far any point of the solid is at most from its place at a time within an interval of time, for which
-    /// `narrow` has its bounds, rounded to plain numbers. `since` is the time since then, and `size` the distance up to
-    /// which a half-space counts from its point.
+    /// Greatest distance of a point of the solid, over an interval of time, from its place at a time within it, in
+    /// plain numbers. `narrow` has the bounds at that time, and `since` is the time since then. A half-space is used up
+    /// to the distance `size` from its point.
     pub fn displacement(&self, narrow: &Self, since: Interval, size: f64) -> f64 {
         let by = |x: TimeJet<Interval>, narrow: TimeJet<Interval>| {
             x.narrowed(narrow, since).value() - Interval::constant(narrow.value().middle())

@@ -326,7 +326,7 @@ impl<'a> ClearanceProver<'a> {
     }
 }
 
-/// Numbers of the triangles of meshes that stand for two shapes; `None` for the shape itself.
+/// Triangles of meshes in place of two shapes, by their numbers; `None` for the shape itself.
 type Triangles = [Option<usize>; 2];
 
 /// Proof of one claim.
@@ -480,8 +480,8 @@ impl PairProof<'_, '_> {
         Ok(least)
     }
 
-    /// How far any point of the other core is at most, in the frame of mesh `of`, from its place in the middle of a part
-    /// of the motion.
+    /// Greatest distance of a point of the other core, over a part of the motion, from its place in the middle of it,
+    /// in the frame of mesh `of`.
     fn displacement(&self, slab: &Slab, of: usize) -> f64 {
         let model = self.prover.model;
         let [mesh, other] = [self.shapes[of], self.shapes[1 - of]];
@@ -490,7 +490,7 @@ impl PairProof<'_, '_> {
         let seen =
             |poses: &[Pose<TimeJet<Interval>>]| self.solid(poses, other, None).moved(poses[body.0].inverse());
         let (over, narrow) = (seen(&slab.poses), seen(&middle.poses));
-        // A plane counts as far as the mesh reaches.
+        // The plane is used as far as the mesh reaches.
         let farthest = match &narrow {
             EnclosedSolid::Core(Core::HalfSpace { point, .. }) => {
                 let (centre, radius) = surface.ball();

@@ -115,7 +115,11 @@ impl Surface {
                     if bounds[0].0 < bounds[1].0 {
                         bounds.swap(0, 1);
                     }
-                    open.extend(bounds.into_iter().filter(|(at_least, _)| *at_least <= least));
+                    for half in bounds {
+                        if half.0 <= least {
+                            open.push(half);
+                        }
+                    }
                 }
             }
         }
@@ -164,7 +168,11 @@ impl Surface {
             if bounds[0].0 < bounds[1].0 {
                 bounds.swap(0, 1);
             }
-            open.extend(bounds.into_iter().filter(|(at_least, ..)| *at_least <= least));
+            for pair in bounds {
+                if pair.0 <= least {
+                    open.push(pair);
+                }
+            }
         }
     }
 
