@@ -102,37 +102,35 @@ pub(super) const MOMENT: Curve = Curve {
     ..FORCE
 };
 
-/// Points, the name of a file that holds them, or a table with it.
-pub(super) fn points_given(
+/// Points, which `pair` reads one by one, the name of a file that holds them, or a table with it.
+pub(super) fn points_given<P: From<[f64; 2]>>(
     r: &mut Reader<'_>,
     fields: &Fields<'_>,
     f: Field<'_>,
-    table_of_file: &'static Table,
-    of: &Curve,
-) -> Option<Vec<[f64; 2]>> {
+    (table_of_file, of): (&'static Table, &Curve),
+    pair: impl Fn(&mut Reader<'_>, &Value<'_>, &Subject, &str) -> Option<P>,
+) -> Option<Vec<P>> {
+    let in_file = |points: Vec<[f64; 2]>| points.into_iter().map(P::from).collect();
     let subject = fields.subject(f.key);
     match f.value.get_ref() {
         DeValue::Table(table) => {
             let fields = r.fields(subject.name, f.value.span(), table, table_of_file.keys());
             let file = r.need(&fields, "file")?;
-            points_in_file(r, &fields, file, of)
+            points_in_file(r, &fields, file, of).map(in_file)
         }
         DeValue::String(name) => match points_of_text(r, name, &FIRST_TWO, of) {
-            Ok(points) => Some(points),
+            Ok(points) => Some(in_file(points)),
             Err(e) => {
                 r.data_error(f.value.span(), e);
                 None
             }
         },
-        _ => pairs(r, f.value, &subject, of.abscissa),
+        _ => {
+            let expected = format!("points `[{}, value]`, or the name of a CSV file", of.abscissa);
+            let list = r.list(f.value, &subject, &expected)?;
+            list.iter().map(|value| pair(r, value, &subject, &expected)).collect()
+        }
     }
-}
-
-/// A list of pairs of numbers.
-fn pairs(r: &mut Reader<'_>, value: &Value<'_>, subject: &Subject, abscissa: &str) -> Option<Vec<[f64; 2]>> {
-    let expected = format!("points `[{abscissa}, value]`, or the name of a CSV file");
-    let list = r.list(value, subject, &expected)?;
-    list.iter().map(|pair| r.numbers::<2>(pair, subject, &expected)).collect()
 }
 
 /// The points of a file, whose name a field gives and whose columns another.

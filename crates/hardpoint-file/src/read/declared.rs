@@ -1,6 +1,8 @@
 //! Fields of measures, masses and forces, as the core declares them.
 
-use hardpoint::draft::{DirectionDraft, FieldDraft, FieldKind, MeasureField, NumberDraft, RayDraft};
+use hardpoint::draft::{
+    DirectionDraft, FieldDraft, FieldKind, MeasureField, NumberDraft, RayDraft, TablePointDraft,
+};
 use hardpoint::law::Law;
 use hardpoint::model::{
     Axes, CoupledStiffness, ElasticDirection, ElementUnit, JacobianValue, OrientationAngle, ReactionPart,
@@ -35,12 +37,12 @@ const FIXED_RAY: Table = table! {
 };
 const FORCE_TABLE: Shape = Shape::Any(
     "ForceTable",
-    "A force in N over a way in the length unit.",
+    "A force in N, or an expression over parameters, over a way in the length unit.",
     &[Shape::list(&TWO_NUMBERS), Shape::File, Shape::Table(&FORCE_FILE)],
 );
 const MOMENT_TABLE: Shape = Shape::Any(
     "MomentTable",
-    "A moment in N m over an angle in the angle unit.",
+    "A moment in N m, or an expression over parameters, over an angle in the angle unit.",
     &[Shape::list(&TWO_NUMBERS), Shape::File, Shape::Table(&MOMENT_FILE)],
 );
 const MATRIX_ROW: Shape = Shape::exactly(6, &NUMBER);
@@ -241,15 +243,38 @@ fn ray(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>, place: &mut EntryP
 }
 
 /// Force over deflection, given here or in a file.
-fn force_table(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>) -> Option<Vec<[f64; 2]>> {
-    let points = data::points_given(r, fields, f, &FORCE_FILE, &data::FORCE)?;
-    Some(points.into_iter().map(|[way, force]| [r.units.length.metres(way), force]).collect())
+fn force_table(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>) -> Option<Vec<TablePointDraft>> {
+    let points =
+        data::points_given(r, fields, f, (&FORCE_FILE, &data::FORCE), |r, pair, subject, expected| {
+            table_point(r, pair, subject, expected, ElementUnit::Force)
+        })?;
+    let in_si = |p: TablePointDraft| TablePointDraft { deflection: r.units.length.metres(p.deflection), ..p };
+    Some(points.into_iter().map(in_si).collect())
 }
 
 /// Moment over angle, given here or in a file.
-fn moment_table(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>) -> Option<Vec<[f64; 2]>> {
-    let points = data::points_given(r, fields, f, &MOMENT_FILE, &data::MOMENT)?;
-    Some(points.into_iter().map(|[angle, moment]| [r.units.angle.radians(angle), moment]).collect())
+fn moment_table(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>) -> Option<Vec<TablePointDraft>> {
+    let points =
+        data::points_given(r, fields, f, (&MOMENT_FILE, &data::MOMENT), |r, pair, subject, expected| {
+            table_point(r, pair, subject, expected, ElementUnit::Moment)
+        })?;
+    let in_si = |p: TablePointDraft| TablePointDraft { deflection: r.units.angle.radians(p.deflection), ..p };
+    Some(points.into_iter().map(in_si).collect())
+}
+
+/// Point of a table: a deflection as written, the same in every design, and a force or moment, by itself or by an
+/// expression.
+fn table_point(
+    r: &mut Reader<'_>,
+    value: &Value<'_>,
+    subject: &Subject,
+    expected: &str,
+    unit: ElementUnit,
+) -> Option<TablePointDraft> {
+    let list = r.exactly(value, subject, [expected, "2"], 2)?;
+    let deflection = r.number(&list[0], &subject.item(0));
+    let force = number_of(r, &list[1], &subject.item(1), unit);
+    Some(TablePointDraft { deflection: deflection?, force: force? })
 }
 
 /// Symmetric stiffness matrix.

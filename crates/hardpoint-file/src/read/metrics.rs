@@ -116,5 +116,7 @@ fn names(keys: &[ReductionKeys]) -> String {
 
 /// Target curve of an `rms`, given here or in a file.
 fn target(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>) -> Option<Vec<[f64; 2]>> {
-    data::points_given(r, fields, f, &TARGET_FILE, &data::TARGET)
+    data::points_given(r, fields, f, (&TARGET_FILE, &data::TARGET), |r, pair, subject, expected| {
+        r.numbers(pair, subject, expected)
+    })
 }

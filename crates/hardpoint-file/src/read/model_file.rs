@@ -285,6 +285,30 @@ impl ModelFile {
         model.force_curves().into_iter().filter_map(of).collect()
     }
 
+    /// HP0258: warnings about curves with adjacent points whose forces are equal, but may differ in other designs.
+    pub(super) fn kinked_curves(&self) -> Vec<Diagnostic> {
+        let model = &self.model;
+        let masses = model.elements.iter().filter(|e| e.kind.has_mass()).count();
+        let of = |curve: ForceCurve<'_>| {
+            let (name, key) = (shown(&model.elements[curve.element.0].name), curve.key);
+            let [first, ..] = model.kinked_intervals(&curve)[..] else { return None };
+            let (unit, per_si) = self.units.of(curve.quantity(model));
+            // A compression is a negative extension.
+            let sign = if key == "compression" { -1.0 } else { 1.0 };
+            let mut ends = first.map(|e| sign * e * per_si);
+            ends.sort_by(f64::total_cmp);
+            let [from, to] = ends.map(|e| hardpoint_table::figures::with_unit(e, unit));
+            let message = format!("`{key}` of `{name}` has the same force at {from} and {to}");
+            let place = Some((Section::Forces, curve.element.0 - masses));
+            let d = self.diagnostic(Severity::Warning, "HP0258", message, place);
+            Some(
+                d.note("the slope of the curve there has a kink over these forces, and derivatives by them are those of one side")
+                    .help("give the two points different forces, or the same expression"),
+            )
+        };
+        model.force_curves().into_iter().filter_map(of).collect()
+    }
+
     /// Renders a diagnostic of this file for a terminal; with `color`, with ANSI escapes.
     pub fn render(&self, diagnostic: &Diagnostic, color: bool) -> String {
         self.source.render(diagnostic, color)

@@ -243,6 +243,7 @@ pub(crate) fn parsed(folder: Folder<'_>, text: &str, file_name: &str) -> Result<
             file.remarks.extend(file.weightless());
             file.remarks.extend(file.open_bushings());
             file.remarks.extend(file.falling_curves());
+            file.remarks.extend(file.kinked_curves());
             file.remarks = in_order(file.remarks);
             Ok(file)
         }

@@ -6,7 +6,7 @@ use hardpoint::draft::{ConstantError, LocationDraft};
 use hardpoint::expression::Expression;
 use hardpoint::joint::Quantity;
 use hardpoint::space::Vec3;
-use toml::de::DeValue;
+use toml::de::{DeArray, DeValue};
 
 use super::diagnostic::closest;
 use super::fields::{Field, Fields, Subject, Value};
@@ -194,15 +194,7 @@ impl Reader<'_> {
         [expected, count]: [&str; 2],
         shape: Shape,
     ) -> Option<[f64; N]> {
-        let list = value.get_ref().as_array();
-        let Some(list) = list.filter(|list| list.len() == N) else {
-            self.wrong(value, subject, expected);
-            if let (Some(list), Some(d)) = (list, self.found.last_mut()) {
-                let n = list.len();
-                d.label = Some(format!("{n} value{} instead of {count}", if n == 1 { "" } else { "s" }));
-            }
-            return None;
-        };
+        let list = self.exactly(value, subject, [expected, count], N)?;
         let mut numbers = [0.0; N];
         let mut complete = true;
         for (k, v) in list.iter().enumerate() {
@@ -212,6 +204,26 @@ impl Reader<'_> {
             }
         }
         complete.then_some(numbers)
+    }
+
+    /// A list of `n` values; `count` is the permitted number of them.
+    pub fn exactly<'v, 'a>(
+        &mut self,
+        value: &'v Value<'a>,
+        subject: &Subject,
+        [expected, count]: [&str; 2],
+        n: usize,
+    ) -> Option<&'v DeArray<'a>> {
+        let list = value.get_ref().as_array();
+        let found = list.filter(|list| list.len() == n);
+        if found.is_none() {
+            self.wrong(value, subject, expected);
+            if let (Some(list), Some(d)) = (list, self.found.last_mut()) {
+                let n = list.len();
+                d.label = Some(format!("{n} value{} instead of {count}", if n == 1 { "" } else { "s" }));
+            }
+        }
+        found
     }
 
     /// Global coordinates, in m. `or` describes what else is permitted.

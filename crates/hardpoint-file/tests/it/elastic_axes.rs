@@ -434,7 +434,7 @@ fn turned(k: usize, moment: f64, joints: &str, element: &str) -> String {
         r#"
 name = "turned"
 units = {{ length = "mm", angle = "deg" }}
-parameters = {{ factor = 1.3 }}
+parameters = {{ factor = 1.3, torque = 8 }}
 bodies = {{ b = {{}} }}
 {joints}
 points = {{ p = {{ body = "b", at = {at} }} }}
@@ -455,7 +455,7 @@ fn moments_over_an_angle_have_their_closed_form() {
     // 12 a + 0.03 a^3 + 1.3 C(a) = M, in N m and deg, with C(5) = 8: a point of the curve.
     let (a, of_curve) = (5.0, 8.0);
     let (stiffness, cubic, factor) = (12.0, 0.03, 1.3);
-    let curve = "[[-10, -30], [0, 0], [5, 8], [12, 50]]";
+    let curve = "[[-10, -30], [0, 0], [5, \"torque\"], [12, \"6*torque + 2\"]]";
     // Fritsch and Butland: chords of 5 and 7 deg with slopes of 1.6 and 6.
     let slope = (19.0 + 17.0) / (19.0 / 1.6 + 17.0 / 6.0);
     for k in 0..3 {
@@ -496,11 +496,17 @@ fn moments_over_an_angle_have_their_closed_form() {
                 let sine = value(&solution, 0, "sine");
                 assert!((sine - a.to_radians().sin()).abs() < 1e-12, "{element}: {sine}");
                 // da/df = -C / (k + 3 k_3 a^2 + f C')
-                let turn = -of_curve / (stiffness + 3.0 * cubic * a * a + factor * slope);
-                let expected = a.to_radians().cos() * turn.to_radians();
-                let m = solution.measured.index("sine").unwrap();
-                let found = solution.measured.d(0, model.variable("factor").unwrap(), m)[0];
-                assert!((found - expected).abs() < 1e-10 * expected.abs(), "{element}: {found} {expected}");
+                // da/dC = -f / (k + 3 k_3 a^2 + f C')
+                for (name, force) in [("factor", of_curve), ("torque", factor)] {
+                    let turn = -force / (stiffness + 3.0 * cubic * a * a + factor * slope);
+                    let expected = a.to_radians().cos() * turn.to_radians();
+                    let m = solution.measured.index("sine").unwrap();
+                    let found = solution.measured.d(0, model.variable(name).unwrap(), m)[0];
+                    assert!(
+                        (found - expected).abs() < 1e-10 * expected.abs(),
+                        "{element}: {found} {expected}"
+                    );
+                }
             }
             verify_all(&model);
         }
@@ -804,5 +810,192 @@ at = [0, 1]
             let found = value(&solution, 1, name);
             assert!((found - at).abs() <= SAME, "{name}: {found}");
         }
+    }
+}
+
+/// An element of every kind with a curve, through forces that parameters give, in inches and degrees.
+const CURVES: &str = r#"
+name = "curves"
+units = { length = "in", angle = "deg" }
+[parameters]
+near = 35
+far = 90
+[hardpoints]
+o = [0, 0, 0]
+[bodies]
+b = {}
+slider = {}
+arm = {}
+[joints]
+j = { type = "fixed", bodies = ["ground", "b"], at = "o" }
+slide = { type = "translational", bodies = ["ground", "slider"], at = [0, 10, 0], axis = "x" }
+hinge = { type = "revolute", bodies = ["ground", "arm"], at = [0, 20, 0], axis = "z" }
+[drivers]
+slides = { joint = "slide", law = 0 }
+turns = { joint = "hinge", law = 0 }
+[points]
+p = { body = "b", at = [3, 1, 0.5] }
+s = { body = "slider", at = [0, 10, 0] }
+a = { body = "arm", at = [4, 20, 0] }
+[forces.soft]
+type = "elastic_joint"
+joint = "j"
+x = 10
+y = 30
+z = 25
+about_x = 4
+about_y = 5
+about_z = 6
+curve_x = [[-2, "-near"], [0, 0], [2, "near"], [3, "near + far"]]
+curve_about_z = [[-9, "-near/5"], [0, 0], [4, "far/20"], [12, 40]]
+[forces.bush]
+type = "bushing"
+from = { body = "ground", at = [1, 0, 0] }
+to = { body = "b", at = [1, 0, 0] }
+x = 2
+y = 3
+z = 4
+curve_y = [[-3, "-far"], [0, 0], [1, "near/2"], [4, 150]]
+curve_about_x = [[-10, "-near/9"], [0, 0], [10, "far/20"]]
+[forces.coil]
+type = "joint_spring"
+joint = "slide"
+stiffness = 3
+curve = [[-4, "-far"], [0, 0], [1, 5], [3, "near"]]
+[forces.stop]
+type = "spring"
+from = { body = "ground", at = [6, 10, 0] }
+to = { body = "slider", at = [1, 10, 0] }
+free_length = 5
+compression = [[-1, 0], [0.5, 0], [1, "near/4"], [2, "far"]]
+[forces.bar]
+type = "torsion_spring"
+joint = "hinge"
+stiffness = 0.5
+curve = [[-30, "-far/9"], [0, 0], [10, "near/7"], [25, "far/6"]]
+[forces]
+on_body = { type = "force", at = "p", force = 80, along = [1, 0.4, -0.2], law = "0.1 + t" }
+on_slider = { type = "force", at = "s", force = 60, along = "x", law = "0.1 + t" }
+on_arm = { type = "force", at = "a", force = 90, along = "y", law = "0.1 + t" }
+[equilibrium]
+released = ["slides", "turns"]
+[measures]
+give = { type = "compliance", of = "p.x", at = "p", along = "x" }
+angle = { type = "coordinate", joint = "hinge" }
+across = { type = "reaction", joint = "j", part = "force_y" }
+stop = { type = "spring_force", force = "stop" }
+[time]
+end = 1
+steps = 3
+"#;
+
+#[test]
+fn forces_of_curve_points_are_design_variables() {
+    let model = model_of(CURVES);
+    verify_all(&model);
+    let names = ["p.x", "p.y", "p.z", "s.x", "a.y", "give", "angle", "across", "stop"];
+    let solution = solved(CURVES);
+    let absolute = solved_by(&model, Formulation::Absolute);
+    let directions = [vec![1.0, 0.0], vec![0.0, 1.0]];
+    let pairs = [[0, 0], [0, 1], [1, 0], [1, 1]];
+    let second = Analysis::new(&model).unwrap().second(&[], &directions, &pairs);
+    for (v, (name, nominal)) in [("near", 35.0), ("far", 90.0)].into_iter().enumerate() {
+        // The same design with another number in the text.
+        let step = 1e-3 * nominal;
+        let [above, below] = [step, -step].map(|h| {
+            solved(&CURVES.replace(&format!("{name} = {nominal}"), &format!("{name} = {:?}", nominal + h)))
+        });
+        let variable = model.variable(name).unwrap();
+        for what in names {
+            let m = solution.measured.index(what).unwrap();
+            let of = |s: &Solution, v: VariableId| -> Vec<f64> {
+                (0..model.times.len()).map(|k| s.measured.d(k, v, m)[0]).collect()
+            };
+            let found = of(&solution, variable);
+            let largest = found.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+            assert!(largest > 0.0, "{what} by {name}");
+            for (k, found) in found.iter().enumerate() {
+                let expected = (value(&above, k, what) - value(&below, k, what)) / (2.0 * step);
+                assert!(
+                    (found - expected).abs() <= DIFFERENCES * largest,
+                    "{what} by {name}: {found} {expected}"
+                );
+                let again = of(&absolute, variable)[k];
+                assert!((found - again).abs() <= SAME * largest, "{what} by {name}: {found} {again}");
+            }
+            if !second.outputs[m].known.by_position {
+                continue;
+            }
+            for (p, [first, along]) in pairs.into_iter().enumerate().filter(|(_, pair)| pair[1] == v) {
+                let slopes = [&above, &below].map(|s| of(s, VariableId(first)));
+                let expected = |k: usize| (slopes[0][k] - slopes[1][k]) / (2.0 * step);
+                let most = (0..model.times.len()).fold(0.0_f64, |most, k| most.max(expected(k).abs()));
+                for k in 0..model.times.len() {
+                    let (found, expected) = (second.value(k, p, m), expected(k));
+                    let what = format!("{what} by {first} and {along} at {k}: {found} {expected}");
+                    assert!((found - expected).abs() <= DIFFERENCES * most, "{what}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn curves_in_other_units_follow_the_same_forces() {
+    // 10 N/in e + C(e) = 55 N with C(2 in) = 35 N, whatever the unit of length.
+    let text = |unit: &str, scale: f64| {
+        held(
+            "fixed",
+            &format!(
+                "x = {:?}, curve_x = [[{:?}, \"-force\"], [0, 0], [{:?}, \"force\"]]",
+                10.0 / scale,
+                -2.0 * scale,
+                2.0 * scale
+            ),
+        )
+        .replace("length = \"m\"", &format!("length = \"{unit}\""))
+        .replace("force = 100", "force = 55")
+        .replace("[hardpoints]", "[parameters]\nforce = 35\n[hardpoints]")
+    };
+    let found = [("in", 1.0), ("mm", 25.4)].map(|(unit, scale)| {
+        let model = model_of(&text(unit, scale));
+        let solution = solved_by(&model, Formulation::Relative);
+        let m = solution.measured.index("o.x").unwrap();
+        (value(&solution, 0, "o.x"), solution.measured.d(0, model.variable("force").unwrap(), m)[0])
+    });
+    // The chords have one slope: 1/(10 + 17.5) in per N.
+    for (x, by_force) in found {
+        assert!((x - 2.0 * 0.0254).abs() < 1e-12, "{x}");
+        assert!((by_force + 0.0254 / 27.5).abs() < 1e-12, "{by_force}");
+    }
+}
+
+#[test]
+fn forces_of_curve_points_that_are_equal_or_unknown_are_reported() {
+    let with =
+        |keys: &str| held("fixed", keys).replace("[hardpoints]", "[parameters]\nf = 10\nw = 1\n[hardpoints]");
+    let remarks = |keys: &str| {
+        let file = parse(&with(keys), "elastic.toml").unwrap_or_else(|e| panic!("{e}"));
+        let found = file.remarks.iter().filter(|d| d.code == "HP0258");
+        found.map(|d| d.message.clone()).collect::<Vec<_>>()
+    };
+    let kinked = "x = 10, curve_x = [[-1, \"-f\"], [0, 0], [1, \"f\"], [2, 10]]";
+    assert_eq!(remarks(kinked), ["`curve_x` of `soft` has the same force at 1 m and 2 m"]);
+    assert!(
+        remarks("x = 10, curve_x = [[-1, \"-f\"], [0, 0], [1, \"f\"], [2, \"f\"], [3, 70], [4, 70]]")
+            .is_empty()
+    );
+    for (keys, expected) in [
+        ("x = 10, curve_x = [[-1, \"-g\"], [1, 4]]", "HP0204"),
+        (
+            "x = 10, curve_x = [[-1, -1], [\"w\", 4]]",
+            "cannot follow parameter `w`",
+        ),
+        ("x = 10, curve_x = [[-1, -1], [1, \"1/(f - 10)\"]]", "HP0228"),
+        ("x = 10, curve_x = [[1, \"f\"], [-1, \"-f\"]]", "does not increase from point to point"),
+        ("x = 10, curve_x = [[-1, \"-f\", 2], [1, \"f\"]]", "3 values instead of 2"),
+    ] {
+        let found = faults(&with(keys));
+        assert!(found.contains(expected), "{keys}: {found}");
     }
 }

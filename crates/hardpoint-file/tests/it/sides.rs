@@ -586,12 +586,12 @@ pub(crate) fn masses_and_forces(hold: Hold<'_>) {
             "mesh" => vec!["body = \"left_b\", mesh = \"s.stl\", density = 2700".into()],
             "spring" => vec![
                 format!("from = {}, to = {}, stiffness = 20, cubic = 0.01, preload = 30, damping = 0.4", point("ground", "[0, 200, 300]"), point("left_b", "\"left_P\"")),
-                format!("from = {}, to = {}, compression = [[0, 0], [20, 300], [90, 2500]], free_length = 420, scale = 1.2", point("ground", "[0, 200, 300]"), point("left_b", "\"left_P\"")),
+                format!("from = {}, to = {}, compression = [[0, 0], [20, \"3*10^2\"], [90, 2500]], free_length = 420, scale = 1.2", point("ground", "[0, 200, 300]"), point("left_b", "\"left_P\"")),
                 format!("from = {}, to = {}, extension = [[0, 0], [20, 300], [900, 2500]], free_length = 300", point("ground", "[0, 200, 300]"), point("left_b", "\"left_P\"")),
             ],
             "joint_spring" => vec![
                 "joint = \"left_tube\", coordinate = \"displacement\", stiffness = 12, equilibrium = 5, damping = 0.3".into(),
-                "joint = \"left_tube\", coordinate = \"displacement\", stiffness = 12, curve = [[-9, -20], [0, 0], [5, 30]]".into(),
+                "joint = \"left_tube\", coordinate = \"displacement\", stiffness = 12, curve = [[-9, \"-40/2\"], [0, 0], [5, \"15*2\"]]".into(),
             ],
             "torsion_spring" => vec![
                 "joint = \"left_tube\", coordinate = \"angle\", stiffness = 0.3, equilibrium = 4, damping = 0.02".into(),
@@ -614,7 +614,7 @@ pub(crate) fn masses_and_forces(hold: Hold<'_>) {
             "bushing" => vec![format!("from = {}, to = {}, x = 100, y = 200, z = 300, about_x = 0.5, about_y = 0.7, about_z = 0.9, damping = 0.1", point("left_a", "[60, 420, 10]"), point("left_c", "[60, 420, 10]"))]
                 .into_iter()
                 .chain(["", "axis = [0.3, 1, 0.2], axis2 = [1, 0.2, 0.1],", "axis = { through = [\"left_O\", \"left_P\"] }, axis2 = [1, 0, 0.1],"].map(|axes| {
-                    format!("from = {}, to = {}, {axes} x = 0.05, y = 0.1, z = 0.15, about_x = 0.00025, curve_x = [[-5, -0.45], [0, 0], [3, 0.35]], curve_y = [[-4, -0.1], [0, 0], [3, 0.35]], curve_z = [[-5, -0.045], [0, 0], [4, 0.035]], curve_about_x = [[-9, -0.004], [0, 0], [7, 0.005]], curve_about_y = [[-8, -0.003], [0, 0], [9, 0.005]], curve_about_z = [[-6, -0.002], [0, 0], [8, 0.004]], cubic_about_z = 0.000001, scale_about_y = 0.8, scale_x = 1.2, preload_x = 0.015, preload_y = 0.025, preload_z = 0.035, preload_about_x = 0.001, preload_about_y = 0.0015, preload_about_z = 0.002, matrix = [[0.05, 0.01, 0.015, 0.005, 0.01, 0.015], [0.01, 0.05, 0.02, 0.015, 0.005, 0.01], [0.015, 0.02, 0, 0.01, 0.015, 0.005], [0.005, 0.015, 0.01, 0.0005, 0.0001, 0.00015], [0.01, 0.005, 0.015, 0.0001, 0.001, 5e-05], [0.015, 0.01, 0.005, 0.00015, 5e-05, 0.0005]]", point("left_a", "[60, 420, 10]"), point("left_c", "[60, 420, 10]"))
+                    format!("from = {}, to = {}, {axes} x = 0.05, y = 0.1, z = 0.15, about_x = 0.00025, curve_x = [[-5, \"-0.9/2\"], [0, 0], [3, 0.35]], curve_y = [[-4, -0.1], [0, 0], [3, 0.35]], curve_z = [[-5, -0.045], [0, 0], [4, 0.035]], curve_about_x = [[-9, -0.004], [0, 0], [7, 0.005]], curve_about_y = [[-8, -0.003], [0, 0], [9, 0.005]], curve_about_z = [[-6, -0.002], [0, 0], [8, 0.004]], cubic_about_z = 0.000001, scale_about_y = 0.8, scale_x = 1.2, preload_x = 0.015, preload_y = 0.025, preload_z = 0.035, preload_about_x = 0.001, preload_about_y = 0.0015, preload_about_z = 0.002, matrix = [[0.05, 0.01, 0.015, 0.005, 0.01, 0.015], [0.01, 0.05, 0.02, 0.015, 0.005, 0.01], [0.015, 0.02, 0, 0.01, 0.015, 0.005], [0.005, 0.015, 0.01, 0.0005, 0.0001, 0.00015], [0.01, 0.005, 0.015, 0.0001, 0.001, 5e-05], [0.015, 0.01, 0.005, 0.00015, 5e-05, 0.0005]]", point("left_a", "[60, 420, 10]"), point("left_c", "[60, 420, 10]"))
                 }))
                 .chain([format!("from = {}, to = {}, axis = [0.3, 1, 0.2], x = 1, y = 1, z = 3, about_z = 0.03, preload_z = 0.7, preload_about_z = 0.04", point("left_a", "[60, 420, 10]"), point("left_c", "[60, 420, 10]"))])
                 .collect(),

@@ -1,6 +1,6 @@
 //! Masses and forces as written, and their resolution to a model.
 
-use crate::draft::{DirectionDraft, FieldDraft, MeasureField, NumberDraft, PointRef};
+use crate::draft::{DirectionDraft, FieldDraft, MeasureField, NumberDraft, PointRef, TablePointDraft};
 use crate::law::Law;
 use crate::model::{
     Angle, Axes, BodyId, CoupledStiffness, CubicStiffness, CubicTorsionalStiffness, Damping, Density,

@@ -1,6 +1,6 @@
 //! Measures as written, and their resolution to a model.
 
-use crate::draft::{DirectionDraft, NumberDraft, PointRef, RayDraft};
+use crate::draft::{DirectionDraft, NumberDraft, PointRef, RayDraft, TablePointDraft};
 use crate::expression::Expression;
 use crate::joint::VectorKind;
 use crate::law::Law;
@@ -133,8 +133,8 @@ pub enum FieldDraft {
     Number(NumberDraft),
     /// A number over time.
     Law(Law),
-    /// Points of a table, SI.
-    Table(Vec<[f64; 2]>),
+    /// Points of a table.
+    Table(Vec<TablePointDraft>),
     /// Rows of a matrix of stiffnesses.
     Matrix(Box<[[NumberDraft; 6]; 6]>),
     /// Solid that a closed surface encloses.

@@ -21,7 +21,7 @@ pub(crate) use error::short;
 pub use error::{DraftError, DraftLocation, Section, did_you_mean, some_of};
 use measure::not_drivable;
 pub use measure::{FieldDraft, FieldKind, MeasureField, MeasureKindDraft, MeasureType};
-pub use number::NumberDraft;
+pub use number::{NumberDraft, TablePointDraft};
 pub use shape::{
     BetweenDraft, BodyShapeDraft, BodyShapeKindDraft, ClearanceDraft, EndsDraft, MinimumDraft,
     matches_pattern,

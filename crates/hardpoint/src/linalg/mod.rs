@@ -14,7 +14,7 @@ mod symmetric;
 pub(crate) use factors::{Factors, LARGEST_DENSE};
 pub use least_squares::{folded_rows, least_squares};
 pub(crate) use matrix::{Elimination, MOST_GROWTH, Watched};
-pub(crate) use monotone::monotone;
+pub(crate) use monotone::{Cubic, monotone};
 pub(crate) use rank::FullPivot;
 pub(crate) use spline::{Basis, EndKind, Segment, hermite, segment_at};
 pub(crate) use symmetric::diagonalise;

@@ -382,7 +382,7 @@ impl<T: Real> AppliedLoads<'_, T> {
 
     /// Force of a curve times its factor, and its derivative by the deflection.
     pub fn scaled(&self, curve: &SpringTable, scale: Option<NumberId>, deflection: T) -> [T; 2] {
-        let [force, slope] = curve.at(deflection);
+        let [force, slope] = curve.at(deflection, |n| self.number(n));
         scale.map_or([force, slope], |scale| [force, slope].map(|x| x * self.number(scale)))
     }
 

@@ -3,7 +3,8 @@
 use crate::joint::Quantity;
 use crate::law::Law;
 use crate::model::{
-    BodyId, Dimension, Direction, GROUND, JointId, Model, MomentTable, PointId, Solid, SpringTable, WheelId,
+    BodyId, Dimension, Direction, Formula, GROUND, JointId, Model, MomentTable, PointId, Solid, SpringTable,
+    Target, WheelId,
 };
 use crate::number::Real;
 use crate::space::{Mat3, Vec3};
@@ -168,17 +169,17 @@ macro_rules! elements {
             /// About z.
             cubic_about_z: Option<NumberDraft> => Option<CubicTorsionalStiffness>,
             /// A further force against the displacement along x, as a curve: `[displacement, force]`, the force in N.
-            curve_x: Option<Vec<[f64; 2]>> => Option<SpringTable>,
+            curve_x: Option<Vec<TablePointDraft>> => Option<SpringTable>,
             /// Along y.
-            curve_y: Option<Vec<[f64; 2]>> => Option<SpringTable>,
+            curve_y: Option<Vec<TablePointDraft>> => Option<SpringTable>,
             /// Along z.
-            curve_z: Option<Vec<[f64; 2]>> => Option<SpringTable>,
+            curve_z: Option<Vec<TablePointDraft>> => Option<SpringTable>,
             /// A further moment against the angle about x, as a curve: `[angle, moment]`, the moment in N m.
-            curve_about_x: Option<Vec<[f64; 2]>> => Option<MomentTable>,
+            curve_about_x: Option<Vec<TablePointDraft>> => Option<MomentTable>,
             /// About y.
-            curve_about_y: Option<Vec<[f64; 2]>> => Option<MomentTable>,
+            curve_about_y: Option<Vec<TablePointDraft>> => Option<MomentTable>,
             /// About z.
-            curve_about_z: Option<Vec<[f64; 2]>> => Option<MomentTable>,
+            curve_about_z: Option<Vec<TablePointDraft>> => Option<MomentTable>,
             /// Factor of the forces of `curve_x`. Default: 1.
             scale_x: Option<NumberDraft> => Option<Plain>,
             /// Factor of `curve_y`.
@@ -281,9 +282,9 @@ macro_rules! elements {
             cubic: Option<NumberDraft> => Option<CubicStiffness>,
             /// Force by a table: points `[way, force]` of how far it is shorter than its free length, and how hard it
             /// pushes there; or the name of a CSV file that holds them.
-            compression: Option<Vec<[f64; 2]>> => Option<SpringTable>,
+            compression: Option<Vec<TablePointDraft>> => Option<SpringTable>,
             /// The same of how far it is longer, and how hard it pulls.
-            extension: Option<Vec<[f64; 2]>> => Option<SpringTable>,
+            extension: Option<Vec<TablePointDraft>> => Option<SpringTable>,
             /// Factor of the forces in the table. Default: 1.
             scale: Option<NumberDraft> => Option<Plain>,
             /// The length that its deflection counts from, at which a spring without a table has no force. Default:
@@ -307,7 +308,7 @@ macro_rules! elements {
             /// The coordinate at which it pushes nothing; it counts from the drawing. Default: 0.
             equilibrium: Option<NumberDraft> => Option<Length>,
             /// A further force against the way from `equilibrium`, as a curve: `[way, force]`, the force in N.
-            curve: Option<Vec<[f64; 2]>> => Option<SpringTable>,
+            curve: Option<Vec<TablePointDraft>> => Option<SpringTable>,
             /// Factor of the forces of `curve`. Default: 1.
             scale: Option<NumberDraft> => Option<Plain>,
             /// Damping.
@@ -325,7 +326,7 @@ macro_rules! elements {
             /// The angle at which it turns nothing; it counts from the drawing. Default: 0.
             equilibrium: Option<NumberDraft> => Option<Angle>,
             /// A further moment against the angle from `equilibrium`, as a curve: `[angle, moment]`, the moment in N m.
-            curve: Option<Vec<[f64; 2]>> => Option<MomentTable>,
+            curve: Option<Vec<TablePointDraft>> => Option<MomentTable>,
             /// Factor of the moments of `curve`. Default: 1.
             scale: Option<NumberDraft> => Option<Plain>,
             /// Damping, or a viscous friction of the joint.
@@ -843,8 +844,7 @@ impl ElementKind {
     pub fn given_force(&self, model: &Model) -> f64 {
         let Some(Properties { given, table, dimension, .. }) = self.force(model) else { return 0.0 };
         let given = given.into_iter().flatten().map(|n| model.numbers[n.0].value.abs()).reduce(f64::max);
-        let in_table =
-            || table.map_or(0.0, |(_, t)| t.points().iter().map(|p| p[1].abs()).fold(0.0, f64::max));
+        let in_table = || table.map_or(0.0, |(_, t)| t.points().map(|p| p[1].abs()).fold(0.0, f64::max));
         let force = given.unwrap_or_else(in_table);
         if dimension == Dimension::MOMENT { force / model.size() } else { force }
     }
@@ -975,14 +975,31 @@ impl Model {
         let (cubic, factor) = (of.cubic.map_or(0.0, number), of.scale.map_or(1.0, number));
         let force = |[e, c]: [f64; 2]| stiffness * e + cubic * e.powi(3) + factor * c;
         let mut falling: Vec<[f64; 2]> = Vec::new();
-        for pair in curve.table.points().windows(2).filter(|pair| force(pair[1]) < force(pair[0])) {
-            let [from, to] = [pair[0][0], pair[1][0]];
+        for (start, end) in curve.table.points().zip(curve.table.points().skip(1)) {
+            if force(end) >= force(start) {
+                continue;
+            }
+            let [from, to] = [start[0], end[0]];
             match falling.last_mut() {
                 Some(last) if last[1] == from => last[1] = to,
                 _ => falling.push([from, to]),
             }
         }
         falling
+    }
+
+    /// Deflections between which a curve is flat in the nominal design, but not in every one: at forces that are equal
+    /// its slope has a kink, so that derivatives by these forces exist on either side only.
+    pub fn kinked_intervals(&self, curve: &ForceCurve<'_>) -> Vec<[f64; 2]> {
+        let expression =
+            |n: &NumberId| self.formulas.iter().find(|f| f.of == Target::Number(*n)).map(Formula::text);
+        let chords =
+            curve.table.points().zip(curve.table.points().skip(1)).zip(curve.table.numbers().windows(2));
+        let is_kinked = |([from, to], numbers): &([[f64; 2]; 2], &[NumberId])| {
+            from[1] == to[1] && expression(&numbers[0]) != expression(&numbers[1])
+        };
+        let chords = chords.map(|((from, to), numbers)| ([from, to], numbers)).filter(is_kinked);
+        chords.map(|([from, to], _)| [from[0], to[0]]).collect()
     }
 
     /// Given forces and moments with a law.

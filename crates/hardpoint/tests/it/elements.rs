@@ -64,7 +64,7 @@ fn only_table(kind: &mut ElementKindDraft, table: Vec<[f64; 2]>, pushes: bool, f
         unreachable!("the press has a spring")
     };
     (*stiffness, *cubic, *preload, *free_length) = (None, None, None, free);
-    *if pushes { compression } else { extension } = Some(table);
+    *if pushes { compression } else { extension } = Some(table.into_iter().map(Into::into).collect());
 }
 
 #[test]
@@ -109,7 +109,8 @@ fn a_curve_about_a_joint_follows_its_factor_and_is_a_stiffness_on_a_line() {
         let mut draft = press();
         for force in &mut draft.forces {
             if let ElementKindDraft::TorsionSpring { stiffness, curve, scale, .. } = &mut force.kind {
-                (*stiffness, *curve, *scale) = (k.into(), Some(points.clone()), Some(factor.clone()));
+                (*stiffness, *curve, *scale) =
+                    (k.into(), Some(points.iter().map(|p| (*p).into()).collect()), Some(factor.clone()));
             }
         }
         draft
@@ -122,6 +123,42 @@ fn a_curve_about_a_joint_follows_its_factor_and_is_a_stiffness_on_a_line() {
     let points = vec![[-2.0, -9.0], [-0.6, -0.7], [0.2, 0.3], [1.0, 4.0], [3.0, 30.0]];
     let draft = with_parameter(with(points, 1.0, given("harder")), "harder", 0.9);
     differentiated(&draft, &LOADS);
+}
+
+/// Points of a table with forces by expressions.
+fn points(of: &[(f64, &str)]) -> Option<Vec<TablePointDraft>> {
+    Some(of.iter().map(|(at, force)| TablePointDraft { deflection: *at, force: given(force) }).collect())
+}
+
+#[test]
+fn points_of_tables_follow_parameters() {
+    let stretched = [(-0.02, "-soft"), (0.0, "0"), (0.06, "90"), (0.11, "90 + 2*hard"), (0.2, "12*hard")];
+    let pushed: Vec<_> = stretched.iter().rev().map(|(at, force)| (-at, format!("-({force})"))).collect();
+    let pushed: Vec<_> = pushed.iter().map(|(at, force)| (*at, force.as_str())).collect();
+    let coiled = [(-2.0, "-9"), (-0.6, "-0.1*soft"), (0.2, "0.3"), (1.0, "4"), (3.0, "0.25*hard")];
+    let with = |pushes: bool| {
+        let mut draft = press();
+        for force in &mut draft.forces {
+            match &mut force.kind {
+                kind @ ElementKindDraft::Spring { .. } => {
+                    only_table(kind, Vec::new(), pushes, Some(0.2.into()));
+                    let ElementKindDraft::Spring { compression, extension, .. } = kind else { continue };
+                    *if pushes { compression } else { extension } =
+                        points(if pushes { &pushed } else { &stretched });
+                }
+                ElementKindDraft::TorsionSpring { curve, .. } => *curve = points(&coiled),
+                _ => {}
+            }
+        }
+        with_parameter(with_parameter(draft, "soft", 40.0), "hard", 120.0)
+    };
+    let [pulls, pushes] = [false, true].map(with);
+    for formulation in [Formulation::Relative, Formulation::Absolute] {
+        same(&run(&pulls, formulation), &run(&pushes, formulation), &LOADS);
+    }
+    for draft in [pulls, pushes] {
+        differentiated(&draft, &LOADS);
+    }
 }
 
 #[test]
@@ -142,7 +179,7 @@ fn a_point_of_a_spring_table_has_its_force() {
             to: on("ground", [0.0, 0.0, 0.3]),
             stiffness: None,
             cubic: None,
-            compression: Some(table),
+            compression: Some(table.into_iter().map(Into::into).collect()),
             extension: None,
             scale: None,
             free_length: None,
@@ -173,12 +210,12 @@ fn deflection_against_a_spring_table_follows_its_slope() {
         };
         values(&run(&draft.measure("give", kind), Formulation::Relative), "give")[0]
     };
-    let spring = |compression| ElementKindDraft::Spring {
+    let spring = |table: Vec<[f64; 2]>| ElementKindDraft::Spring {
         from: on("ground", [0.2, -0.3, 0.0]),
         to: on("rotor", [0.2, 0.0, 0.0]),
         stiffness: Some((0.25 * k).into()),
         cubic: None,
-        compression: Some(compression),
+        compression: Some(table.into_iter().map(Into::into).collect()),
         extension: None,
         scale: Some(1.5.into()),
         free_length: None,

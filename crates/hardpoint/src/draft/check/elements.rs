@@ -1,7 +1,7 @@
 //! Checks of masses and forces: references and parameters.
 
 use crate::draft::measure::Field;
-use crate::draft::{DraftError, ElementDraft, FieldDraft, FieldKind, NumberDraft, Section};
+use crate::draft::{DraftError, ElementDraft, FieldDraft, FieldKind, NumberDraft, Section, TablePointDraft};
 use crate::joint::{DIRECTION_NAMES, Quantity};
 use crate::law::Law;
 use crate::model::element::{
@@ -51,17 +51,34 @@ impl Checker<'_> {
         (self.faults.len() == faults).then_some(kind)
     }
 
-    /// Returns the table of a spring, as tension over extension.
+    /// Returns the table of a spring, as tension over extension: of a compression, deflections and forces have the
+    /// opposite sign, in the opposite order.
     pub(super) fn spring_table(
         &mut self,
-        points: &[[f64; 2]],
+        points: &[TablePointDraft],
         name: &str,
         here: Here,
         key: &'static str,
     ) -> Option<SpringTable> {
         let is_compression = key == "compression";
-        let table =
-            SpringTable::new(&if is_compression { SpringTable::turned(points) } else { points.to_vec() });
+        let signed = |x: f64| if is_compression { 0.0 - x } else { x };
+        let follow_design = points.iter().any(|p| p.force.expression.is_some());
+        let (mut resolved, mut numbers) = (Vec::new(), Vec::new());
+        for TablePointDraft { deflection, force } in points {
+            let mut value = signed(force.value);
+            if follow_design {
+                let force = NumberDraft { value, per_unit: signed(force.per_unit), ..force.clone() };
+                let number = self.element_number(&force, name, key, here.key(key))?;
+                value = self.model.numbers[number.0].value;
+                numbers.push(number);
+            }
+            resolved.push([signed(*deflection), value]);
+        }
+        if is_compression {
+            resolved.reverse();
+            numbers.reverse();
+        }
+        let table = SpringTable::new(&resolved);
         if let Err(why) = &table {
             let message = format!("the table of `{name}` {why}");
             let point = match key.contains("about") {
@@ -71,7 +88,7 @@ impl Checker<'_> {
             self.fault("HP0252", here.key(key), message)
                 .help(format!("give at least two points `{point}`, in increasing order"));
         }
-        table.ok()
+        table.ok().map(|table| table.with_numbers(numbers))
     }
 
     /// Returns the entries of a stiffness matrix on its diagonal and above. HP0252: a matrix that is not symmetric.
@@ -187,7 +204,7 @@ impl ElementCheck<'_, '_> {
             let Some(curve) = of.curve else { continue };
             let stiffness: f64 = law.stiffnesses(k, k).map(|n| self.value(n)).sum();
             let factor = of.scale.map_or(1.0, |n| self.value(n));
-            if stiffness + factor * curve.at(0.0)[1] < 0.0 {
+            if stiffness + factor * curve.nominal(0.0)[1] < 0.0 {
                 let message = format!("`{}` of `{}` falls at zero deflection", CURVES[k], self.name);
                 self.fault("HP0252", CURVES[k], message)
                     .note("the force would push the second body away from where it is without load")

@@ -3,7 +3,7 @@
 use crate::draft::measure::Field;
 use crate::draft::{
     DirectionDraft, DraftLocation, FieldDraft, FieldKind, MeasureDraft, MetricDraft, NumberDraft, PointRef,
-    RayDraft, Section,
+    RayDraft, Section, TablePointDraft,
 };
 use crate::expression::Expression;
 use crate::joint::free_directions;
@@ -649,11 +649,11 @@ field!(Option<WheelId>, Wheel, Name: Option<String>, may |name, key, c| match na
 });
 field!(ClearanceId, Clearance, Name: String, |name, key, c| c.check.clearance_named(name, c.here.key(key)));
 field!(Solid, Mesh, Solid: Solid, |solid, _key, _c| Some(*solid));
-field!(Option<SpringTable>, Table, Table: Option<Vec<[f64; 2]>>, may |points, key, c| match points {
+field!(Option<SpringTable>, Table, Table: Option<Vec<TablePointDraft>>, may |points, key, c| match points {
     Some(points) => c.check.spring_table(points, c.owner, c.here, key).map(Some),
     None => Some(None),
 });
-field!(Option<MomentTable>, MomentTable, Table: Option<Vec<[f64; 2]>>, may |points, key, c| match points {
+field!(Option<MomentTable>, MomentTable, Table: Option<Vec<TablePointDraft>>, may |points, key, c| match points {
     Some(points) => c.check.spring_table(points, c.owner, c.here, key).map(|table| Some(MomentTable(table))),
     None => Some(None),
 });
