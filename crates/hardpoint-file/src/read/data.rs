@@ -102,15 +102,25 @@ pub(super) const MOMENT: Curve = Curve {
     ..FORCE
 };
 
-/// Points, which `pair` reads one by one, the name of a file that holds them, or a table with it.
+/// Points of a file, in the units of the model file, and the titles of their columns.
+pub(super) struct FilePoints {
+    pub points: Vec<[f64; 2]>,
+    pub titles: Titles,
+}
+
+/// Titles of the columns of abscissa and value, where a file has them.
+pub(super) type Titles = [Option<Title>; 2];
+
+/// Points, which `pair` reads one by one, the name of a file that holds them, or a table with it; with the titles of
+/// the file's columns.
 pub(super) fn points_given<P: From<[f64; 2]>>(
     r: &mut Reader<'_>,
     fields: &Fields<'_>,
     f: Field<'_>,
     (table_of_file, of): (&'static Table, &Curve),
     pair: impl Fn(&mut Reader<'_>, &Value<'_>, &Subject, &str) -> Option<P>,
-) -> Option<Vec<P>> {
-    let in_file = |points: Vec<[f64; 2]>| points.into_iter().map(P::from).collect();
+) -> Option<(Vec<P>, Titles)> {
+    let in_file = |found: FilePoints| (found.points.into_iter().map(P::from).collect(), found.titles);
     let subject = fields.subject(f.key);
     match f.value.get_ref() {
         DeValue::Table(table) => {
@@ -128,7 +138,9 @@ pub(super) fn points_given<P: From<[f64; 2]>>(
         _ => {
             let expected = format!("points `[{}, value]`, or the name of a CSV file", of.abscissa);
             let list = r.list(f.value, &subject, &expected)?;
-            list.iter().map(|value| pair(r, value, &subject, &expected)).collect()
+            let points: Option<Vec<P>> =
+                list.iter().map(|value| pair(r, value, &subject, &expected)).collect();
+            Some((points?, [None, None]))
         }
     }
 }
@@ -139,7 +151,7 @@ pub(super) fn points_in_file(
     fields: &Fields<'_>,
     f: Field<'_>,
     of: &Curve,
-) -> Option<Vec<[f64; 2]>> {
+) -> Option<FilePoints> {
     let columns = columns(r, fields, of);
     let name = r.text(fields, f)?;
     let columns = columns?;
@@ -187,7 +199,7 @@ fn points_of_text(
     name: &str,
     columns: &[Column; 2],
     of: &Curve,
-) -> Result<Vec<[f64; 2]>, DataError> {
+) -> Result<FilePoints, DataError> {
     let units = r.units;
     let text = r.text_of_file(name, &of.wanted)?;
     parse(text.strip_prefix('\u{feff}').unwrap_or(text), &shown(name), columns, of, units)
@@ -200,11 +212,11 @@ fn parse(
     columns: &[Column; 2],
     of: &Curve,
     units: Units,
-) -> Result<Vec<[f64; 2]>, DataError> {
+) -> Result<FilePoints, DataError> {
     let mut reader = records_of(text);
     let mut record = csv::StringRecord::new();
     let mut header: Option<Vec<String>> = None;
-    let mut taken = None;
+    let mut taken: Option<([usize; 2], [f64; 2])> = None;
     let mut points: Vec<[f64; 2]> = Vec::new();
     let unit = of.unit;
     while reader.read_record(&mut record).map_err(|e| no_csv(name, &e))? {
@@ -250,7 +262,9 @@ fn parse(
         let message = format!("`{name}` has no rows of numbers");
         return Err(DataError::content(message, of.write));
     }
-    Ok(points)
+    let title = |place: usize| Some(Title::of(header.as_ref()?.get(place)?));
+    let titles = taken.map_or([None, None], |(places, _)| places.map(title));
+    Ok(FilePoints { points, titles })
 }
 
 /// Name, in quotes for messages, and text of a CSV file in any folder, whose first line `names` something.
@@ -468,6 +482,29 @@ impl Title {
             (Err(error), _) => Err(error),
         }
     }
+}
+
+/// HP0112: the error of a column in `data` whose unit is not one of the quantity `of`, once its dimension is known.
+pub(super) fn other_unit(
+    [name, written]: [&str; 2],
+    data: &str,
+    units: Units,
+    (of, dimension): (&str, Dimension),
+) -> Option<DataError> {
+    if Unit::of_symbol(written).is_some_and(|unit| unit.dimension == dimension) {
+        return None;
+    }
+    let column = format!("`{}` of {data} is in `{}`", shown(name), shown(written));
+    Some(match symbol_of(units, dimension).as_str() {
+        "1" => DataError::content(
+            format!("{column}, and {of} is a plain number"),
+            "remove the unit of the column, or choose other `columns`",
+        ),
+        own => DataError::content(
+            format!("{column}, and {of} is in {own}"),
+            &format!("give the values in {own}, or choose other `columns`"),
+        ),
+    })
 }
 
 /// Unit in a cell or in the brackets of a title; plain numbers have none.

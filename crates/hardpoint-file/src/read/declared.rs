@@ -244,7 +244,7 @@ fn ray(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>, place: &mut EntryP
 
 /// Force over deflection, given here or in a file.
 fn force_table(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>) -> Option<Vec<TablePointDraft>> {
-    let points =
+    let (points, _) =
         data::points_given(r, fields, f, (&FORCE_FILE, &data::FORCE), |r, pair, subject, expected| {
             table_point(r, pair, subject, expected, ElementUnit::Force)
         })?;
@@ -254,7 +254,7 @@ fn force_table(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>) -> Option<
 
 /// Moment over angle, given here or in a file.
 fn moment_table(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>) -> Option<Vec<TablePointDraft>> {
-    let points =
+    let (points, _) =
         data::points_given(r, fields, f, (&MOMENT_FILE, &data::MOMENT), |r, pair, subject, expected| {
             table_point(r, pair, subject, expected, ElementUnit::Moment)
         })?;

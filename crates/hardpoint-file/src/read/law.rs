@@ -15,7 +15,7 @@ use crate::values::{
 use hardpoint_table::AngleUnit;
 
 use super::data;
-use super::data::COLUMN;
+use super::data::{COLUMN, Title};
 
 /// Maximum number of pieces of a sequence, whose cost grows with their square.
 const MOST_PIECES: usize = 500;
@@ -228,9 +228,20 @@ fn law_text(r: &mut Reader<'_>, of: &str, value: &Value<'_>, parameters: &[(&str
     }
 }
 
+/// HP0112: units in the tables of the law that was read last that are not those of its values.
+pub(super) fn check_units(r: &mut Reader<'_>, quantity: Quantity) {
+    for (at, [name, unit]) in std::mem::take(&mut r.law_units) {
+        let of = ("the law", quantity.into());
+        if let Some(error) = data::other_unit([&name, &unit], "the table", r.units, of) {
+            r.data_error(at, error);
+        }
+    }
+}
+
 /// Makes the law that was read last one of a force, which is the same in every design: `None` if it is not. HP0230: a
 /// parameter in it that the design changes.
 pub(super) fn of_force(r: &mut Reader<'_>, subject: &Subject, value: &Value<'_>) -> Option<()> {
+    check_units(r, Quantity::Number);
     let mut is_same = Some(());
     for (_, expression) in std::mem::take(&mut r.law_formulas) {
         let Err(why) = r.nominal.constant(&expression) else { continue };
@@ -462,7 +473,12 @@ fn table_law(r: &mut Reader<'_>, fields: &Fields<'_>) -> Option<Law> {
             r.out_of_place(fields, "columns", "`columns` goes with `file`");
             points_of_table(r, fields, f).map(|p| (p, f))
         }
-        (None, Some(f)) => data::points_in_file(r, fields, f, &data::TABLE).map(|p| (p, f)),
+        (None, Some(f)) => data::points_in_file(r, fields, f, &data::TABLE).map(|found| {
+            if let [_, Some(Title { name, unit: Some(unit) })] = found.titles {
+                r.law_units.push((f.value.span(), [name, unit]));
+            }
+            (found.points, f)
+        }),
         (None, None) => {
             let message = format!("{} has no `points`", fields.what);
             r.report("HP0104", fields.at.clone(), message).help = Some(

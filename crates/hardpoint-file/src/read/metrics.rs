@@ -1,14 +1,15 @@
 //! Metrics: numbers of a measure's curve.
 
-use hardpoint::draft::{MetricDraft, Section};
-use hardpoint::model::{Reduction, ReductionArguments, ReductionKeys};
+use hardpoint::draft::{DraftError, DraftLocation, MetricDraft, Section};
+use hardpoint::model::{Dimension, Model, Reduction, ReductionArguments, ReductionKeys};
+use hardpoint_table::Units;
 
 use crate::values::{
-    CASE, EntryPlace, Field, Fields, NUMBER, OUTPUT, Reader, Shape, TWO_NUMBERS, Table, table,
+    CASE, DataError, EntryPlace, Field, Fields, NUMBER, OUTPUT, Reader, Shape, TWO_NUMBERS, Table, table,
 };
 
 use super::data;
-use super::data::COLUMN;
+use super::data::{COLUMN, Title, Titles};
 use super::raw::Raw;
 
 pub(super) const METRIC: Table = table! {
@@ -34,7 +35,7 @@ const TARGET: Shape =
 pub(super) const TARGET_FILE: Table = table! {
     /// A curve in a CSV file.
     "TargetFile":
-    /// A CSV file in the model's folder or below it: abscissas and values, in the units of the model file.
+    /// A CSV file in the model's folder or below it: abscissas and values, in the units of the model file or a title's.
     must "file": Shape::File, "\"target.csv\"";
     /// The file's columns of abscissa and value, by name or by number from 1. Default: the first two.
     may "columns": Shape::exactly(2, &COLUMN), "[1, 2]";
@@ -47,7 +48,7 @@ pub(super) fn metrics(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
         let place = EntryPlace::of(&fields);
         let of = r.name_of(&fields, "of");
         let over = r.name_of(&fields, "over");
-        let take = take(r, &fields);
+        let (take, titles) = take(r, &fields).unzip();
         let window = r.list_of::<2>(&fields, "window", "the lower and the upper end");
         let case = r.name_of(&fields, "case");
         // An incomplete metric would have another meaning.
@@ -56,6 +57,7 @@ pub(super) fn metrics(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
         }
         let (per_metre, per_radian) = (r.units.length.per_metre(), r.units.angle.per_radian());
         raw.push(r, Section::Metrics, place);
+        raw.target_titles.extend(titles.map(|titles| (raw.draft.metrics.len(), titles)));
         raw.draft.metrics.push(MetricDraft {
             name: entry.0,
             of: of.unwrap_or_default(),
@@ -69,8 +71,8 @@ pub(super) fn metrics(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
     }
 }
 
-/// Reduction of a metric, in the file's units.
-fn take(r: &mut Reader<'_>, fields: &Fields<'_>) -> Option<Reduction> {
+/// Reduction of a metric, in the file's units, and the titles of its target.
+fn take(r: &mut Reader<'_>, fields: &Fields<'_>) -> Option<(Reduction, Titles)> {
     let kind = &Reduction::TYPES[r.word_of(fields, "take")?];
     let [curve, points, place] = [ReductionKeys::Target, ReductionKeys::Points, ReductionKeys::Place];
     if ![curve, points].contains(&kind.keys) {
@@ -81,17 +83,17 @@ fn take(r: &mut Reader<'_>, fields: &Fields<'_>) -> Option<Reduction> {
         let why = format!("only {} are taken at one place", names(&[place]));
         r.out_of_place(fields, "at", why);
     }
-    let mut arguments = ReductionArguments::default();
+    let (mut arguments, mut titles) = (ReductionArguments::default(), Titles::default());
     match kind.keys {
         ReductionKeys::Window => {}
         ReductionKeys::Target => {
             if let Some(f) = fields.get("target") {
-                arguments.target = target(r, fields, f)?;
+                (arguments.target, titles) = target(r, fields, f)?;
             }
         }
         ReductionKeys::Points => {
             let field = r.need(fields, "target")?;
-            arguments.target = target(r, fields, field)?;
+            (arguments.target, titles) = target(r, fields, field)?;
         }
         ReductionKeys::Place => {
             r.out_of_place(fields, "window", "it is taken at one place");
@@ -104,7 +106,7 @@ fn take(r: &mut Reader<'_>, fields: &Fields<'_>) -> Option<Reduction> {
             }
         }
     }
-    Some((kind.of)(arguments))
+    Some(((kind.of)(arguments), titles))
 }
 
 /// The reductions with these keys, as written: `take = "value"` and `"slope"`.
@@ -114,9 +116,30 @@ fn names(keys: &[ReductionKeys]) -> String {
     names.join(" and ").replacen('`', "`take = ", 1)
 }
 
-/// Target curve of an `rms`, given here or in a file.
-fn target(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>) -> Option<Vec<[f64; 2]>> {
+/// Target curve of an `rms`, given here or in a file, and the titles of the file's columns.
+fn target(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>) -> Option<(Vec<[f64; 2]>, Titles)> {
     data::points_given(r, fields, f, (&TARGET_FILE, &data::TARGET), |r, pair, subject, expected| {
         r.numbers(pair, subject, expected)
     })
+}
+
+/// HP0112: targets whose columns have units that are not those of the abscissa and the measure; with the indices of
+/// metrics and the titles of their targets.
+pub(super) fn wrong_units(model: &Model, units: Units, targets: &[(usize, Titles)]) -> Vec<DraftError> {
+    let time = Dimension::NUMBER.rate(-1);
+    let of_metric = |(index, titles): &(usize, Titles)| {
+        let metric = &model.metrics[*index];
+        let columns = [metric.over, Some(metric.of)].map(|output| match output {
+            Some(output) => (format!("`{}`", model.output_name(output)), model.dimension(output)),
+            None => ("the abscissa".to_owned(), time),
+        });
+        let error = titles.iter().zip(&columns).find_map(|(title, (of, dimension))| {
+            let Title { name, unit } = title.as_ref()?;
+            data::other_unit([name, unit.as_deref()?], "the target", units, (of, *dimension))
+        })?;
+        let at = DraftLocation { section: Section::Metrics, index: *index, key: "target", item: None };
+        let DataError { code, message, notes, help, .. } = error;
+        Some(DraftError { code, at, message, notes, help })
+    };
+    targets.iter().filter_map(of_metric).collect()
 }

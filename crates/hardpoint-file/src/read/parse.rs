@@ -19,7 +19,7 @@ use crate::values::{
 
 use super::model::{MODEL, model};
 use super::model_file::ModelFile;
-use super::sweep;
+use super::{metrics, sweep};
 
 /// Maximum number of syntax errors that are shown: later ones usually follow from the first.
 const SYNTAX_ERRORS: usize = 5;
@@ -214,6 +214,7 @@ pub(crate) fn parsed(folder: Folder<'_>, text: &str, file_name: &str) -> Result<
     let model = match Model::from_draft(&raw.draft) {
         Ok(model) => {
             let wrong = list.and_then(|list| sweep::wrong_unit(&model, units, list, &raw.listed));
+            let wrong = wrong.into_iter().chain(metrics::wrong_units(&model, units, &raw.target_titles));
             found.extend(wrong.map(|fault| shown_fault(&source, &raw.places, fault)));
             Some(model)
         }

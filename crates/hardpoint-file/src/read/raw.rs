@@ -8,7 +8,7 @@ use hardpoint::law::Law;
 
 use crate::values::{EntryPlace, Places, Reader};
 
-use super::data::Title;
+use super::data::{Title, Titles};
 use super::drawing::Appearance;
 use super::mesh::Meshes;
 
@@ -32,6 +32,8 @@ pub(crate) struct Raw {
     pub limit_measures: Vec<(MeasureDraft, EntryPlace, bool)>,
     /// Drivers without a law of their own, whose laws are in the cases, by their indices in the draft.
     pub without_law: Vec<usize>,
+    /// Titles of the columns of targets, after the index of their metric.
+    pub target_titles: Vec<(usize, Titles)>,
     /// Titles of the columns of the list of designs.
     pub listed: Vec<Title>,
 }

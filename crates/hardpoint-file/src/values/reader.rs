@@ -32,6 +32,8 @@ pub(crate) struct Reader<'s> {
     pub nominal: Nominal,
     /// Parameters of the current law that are given by expressions, with these expressions.
     pub law_formulas: Vec<(String, Expression)>,
+    /// Columns of the tables of the current law, by name and unit, with the places of these tables.
+    pub law_units: Vec<(Range<usize>, [String; 2])>,
     pub found: Vec<Diagnostic>,
     /// Missing or invalid keys of the current entry.
     pub unread: Vec<&'static str>,
@@ -42,9 +44,9 @@ pub(crate) struct Reader<'s> {
 impl<'s> Reader<'s> {
     pub fn new(source: &'s Source, folder: Folder<'s>) -> Self {
         let (units, nominal) = (Units::default(), Nominal::default());
-        let (texts, law_formulas, found, unread, remarks) = Default::default();
+        let (texts, law_formulas, law_units, found, unread, remarks) = Default::default();
         let plane = None;
-        Self { source, folder, texts, units, plane, nominal, law_formulas, found, unread, remarks }
+        Self { source, folder, texts, units, plane, nominal, law_formulas, law_units, found, unread, remarks }
     }
 }
 

@@ -987,10 +987,7 @@ fn forces_of_curve_points_that_are_equal_or_unknown_are_reported() {
     );
     for (keys, expected) in [
         ("x = 10, curve_x = [[-1, \"-g\"], [1, 4]]", "HP0204"),
-        (
-            "x = 10, curve_x = [[-1, -1], [\"w\", 4]]",
-            "cannot follow parameter `w`",
-        ),
+        ("x = 10, curve_x = [[-1, -1], [\"w\", 4]]", "cannot follow parameter `w`"),
         ("x = 10, curve_x = [[-1, -1], [1, \"1/(f - 10)\"]]", "HP0228"),
         ("x = 10, curve_x = [[1, \"f\"], [-1, \"-f\"]]", "does not increase from point to point"),
         ("x = 10, curve_x = [[-1, \"-f\", 2], [1, \"f\"]]", "3 values instead of 2"),

@@ -5,7 +5,7 @@ use std::path::Path;
 use hardpoint::model::VariableId;
 use hardpoint::run::metrics;
 use hardpoint::{Analysis, Run};
-use hardpoint_file::{ModelFile, parse};
+use hardpoint_file::{ModelFile, Texts, parse, parse_with};
 use hardpoint_study::validity;
 
 fn parsed(text: &str) -> ModelFile {
@@ -652,5 +652,38 @@ preload = 30
         assert!((d - difference).abs() <= 1e-6 * d.abs(), "{steps} steps: {d} {difference}");
         let first = *first.get_or_insert(d);
         assert!((d - first).abs() <= 1e-6 * d.abs(), "{steps} steps: {d} {first}");
+    }
+}
+
+#[test]
+fn units_of_targets_in_files_are_those_of_the_measure_and_its_abscissa() {
+    let read = |keys: &str, csv: &str| {
+        let metric =
+            format!("metrics.off = {{ take = \"rms\", target = \"target.csv\", {keys} }}\ntime = {{");
+        let files: Texts = [("target.csv".to_owned(), csv.to_owned())].into();
+        parse_with(&CRANK.replace("time = {", &metric), "crank.toml", &files).map_err(|e| e.to_string())
+    };
+    let (over, in_time) = ("of = \"A.y\", over = \"A.x\"", "of = \"A.y\"");
+    let value = |keys: &str, csv: &str| {
+        let file = read(keys, csv).unwrap_or_else(|e| panic!("{e}"));
+        let solution = Analysis::new(&file.model).unwrap().run();
+        let off = file.model.metrics.iter().position(|m| m.name == "off").unwrap();
+        metrics(&file.model, &solution)[off].value.unwrap()
+    };
+    // The same numbers in other units.
+    let plain = value(over, "x,y\n-100,50\n100,50\n");
+    for csv in ["x [cm],y [m]\n-10,0.05\n10,0.05\n", "x,y [mm]\n-100,50\n100,50\n"] {
+        assert!((value(over, csv) - plain).abs() < 1e-12, "{csv}");
+    }
+    let plain = value(in_time, "t,y\n0,0\n3,20\n");
+    assert!((value(in_time, "t [ms],y [cm]\n0,0\n3000,2\n") - plain).abs() < 1e-12);
+    for (keys, csv, expected) in [
+        (over, "x,y [deg]\n0,0\n1,1\n", "`y` of the target is in `deg`, and `A.y` is in mm"),
+        (over, "x [s],y\n0,0\n1,1\n", "`x` of the target is in `s`, and `A.x` is in mm"),
+        (in_time, "t [mm],y\n0,0\n1,1\n", "`t` of the target is in `mm`, and the abscissa is in s"),
+        ("of = \"vx\"", "t,v [m]\n0,0\n1,1\n", "`v` of the target is in `m`, and `vx` is in mm/s"),
+    ] {
+        let found = read(keys, csv).err().unwrap_or_default();
+        assert!(found.contains("HP0112") && found.contains(expected), "{csv}: {found}");
     }
 }

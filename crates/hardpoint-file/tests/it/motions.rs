@@ -256,6 +256,7 @@ fn a_data_file_means_the_same_however_it_is_written() {
     }
     for (title, words) in [
         ("travel [kN]", "`travel` of `travel.csv` is in `kN`, and the model file has mm, deg, 1"),
+        ("travel [deg]", "`travel` of the table is in `deg`, and the law is in mm"),
         ("travel [furlong]", "`travel` of `travel.csv` is in `furlong`, which is not a known unit"),
     ] {
         let text = format!("time [s], {title}\n0, 0\n1, 5\n3, 2\n");
