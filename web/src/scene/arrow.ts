@@ -1,4 +1,13 @@
-import { ConeGeometry, CylinderGeometry, Group, type Mesh, type Object3D, TorusGeometry, Vector3 } from 'three'
+import {
+  type BufferGeometry,
+  ConeGeometry,
+  CylinderGeometry,
+  Group,
+  type Mesh,
+  type Object3D,
+  TorusGeometry,
+  Vector3,
+} from 'three'
 import { type Kit, place } from './kit'
 
 /** Drawing order of the layers above the mechanism, from the lowest to the highest. */
@@ -40,7 +49,12 @@ export function straightArrow(
   else
     group.add(
       place(
-        over(kit, new CylinderGeometry(shaft.radius, shaft.radius, end - foot, 12), colour),
+        over(
+          kit,
+          `shaft ${shaft.radius} ${end - foot}`,
+          () => new CylinderGeometry(shaft.radius, shaft.radius, end - foot, 12),
+          colour,
+        ),
         new Vector3(0, (foot + end) / 2, 0),
       ),
     )
@@ -59,7 +73,8 @@ export function ringArrow(
   layer: number,
 ): Group {
   const sweep = 1.5 * Math.PI
-  const arc = over(kit, new TorusGeometry(ring, radius, 8, 48, sweep - head / ring), colour)
+  const angle = sweep - head / ring
+  const arc = over(kit, `arc ${ring} ${radius} ${angle}`, () => new TorusGeometry(ring, radius, 8, 48, angle), colour)
   // The torus lies in xy; laid down, its axis is the y that `place` expects.
   const flat = new Group().add(arc, arcHead(kit, ring, sweep, 1, head, colour))
   flat.rotation.x = -Math.PI / 2
@@ -92,15 +107,15 @@ function onArc(radius: number, angle: number): Vector3 {
 
 function cone(kit: Kit, tip: Vector3, along: Vector3, length: number, colour: string): Mesh {
   return place(
-    over(kit, new ConeGeometry(HEAD * length, length, 20), colour),
+    over(kit, `head ${length}`, () => new ConeGeometry(HEAD * length, length, 20), colour),
     tip.clone().addScaledVector(along, -length / 2),
     along,
   )
 }
 
-/** A mesh without light that nothing hides. */
-export function over(kit: Kit, geometry: Mesh['geometry'], colour: string): Mesh {
-  const mesh = kit.mesh(geometry, colour)
+/** A mesh without light that nothing hides; the key names all that its geometry depends on. */
+export function over(kit: Kit, key: string, make: () => BufferGeometry, colour: string): Mesh {
+  const mesh = kit.keyed(key, make, colour)
   mesh.material = kit.flat(colour, { over: true })
   mesh.castShadow = false
   return mesh

@@ -6,6 +6,7 @@ import { Kit } from './kit'
 import type { Mechanism } from './mechanism'
 import { OVER, type Outlines } from './outlines'
 import type { Palette } from './palette'
+import type { Stock } from './stock'
 
 /** Half the least number of pixels that a detail is drawn with. */
 const DETAIL = 1
@@ -29,8 +30,9 @@ export class Assembly {
     draws: Draw[],
     outlines: Outlines,
     first: number,
+    stock?: Stock,
   ) {
-    this.#kit = new Kit(mechanism, palette)
+    this.#kit = new Kit(mechanism, palette, stock)
     this.drawn = draws.flatMap((draw) => draw(mechanism, this.#kit, choice))
     this.groups = [...mechanism.report.bodies, mechanism].map(() => new Group())
     const world = this.groups[this.groups.length - 1]

@@ -36,6 +36,7 @@ import { LineSegmentsGeometry } from 'three/addons/lines/LineSegmentsGeometry.js
 import { across, type Basis, type Flat, square } from './flat'
 import type { Mechanism } from './mechanism'
 import type { Palette } from './palette'
+import { Stock } from './stock'
 
 /** Finish of a mesh that is not a plain solid. */
 export interface Finish {
@@ -67,14 +68,15 @@ const Y = new Vector3(0, 1, 0)
 export class Kit {
   /** Unit of all sizes. */
   readonly unit: number
-  #materials = new Map<string, Material>()
-  #geometries: BufferGeometry[] = []
-  #shared = new Map<string, BufferGeometry>()
-  #hatch?: CanvasTexture
+  /** Taken from the stock, by key. */
+  readonly #taken = new Map<string, Material | BufferGeometry | CanvasTexture>()
+  /** Geometries that are of this kit alone. */
+  #own: BufferGeometry[] = []
 
   constructor(
     readonly mechanism: Mechanism,
     readonly palette: Palette,
+    private readonly stock = new Stock(),
   ) {
     this.unit = mechanism.unit
   }
@@ -87,7 +89,7 @@ export class Kit {
 
   /** A lit material; one per colour and finish. */
   solid(colour: string, { opacity = 1, open = false, facets = false }: Finish = {}): Material {
-    return this.#material(`solid ${colour} ${opacity} ${open} ${facets}`, () => {
+    return this.#take(`solid ${colour} ${opacity} ${open} ${facets}`, () => {
       const clear = opacity < 1
       return lit({
         color: colour,
@@ -102,7 +104,7 @@ export class Kit {
 
   /** A material without light, for marks; `over` draws it over everything else. */
   flat(colour: string, { over = false, opacity = 1 }: { over?: boolean; opacity?: number } = {}): Material {
-    return this.#material(
+    return this.#take(
       `flat ${colour} ${over} ${opacity}`,
       () => new MeshBasicMaterial({ color: colour, transparent: true, opacity, depthTest: !over, depthWrite: !over }),
     )
@@ -110,7 +112,23 @@ export class Kit {
 
   /** Any geometry as a part's mesh. */
   mesh(geometry: BufferGeometry, colour: string, finish: Finish = {}): Mesh {
-    return this.#mesh(this.#keep(geometry), colour, finish)
+    this.#own.push(geometry)
+    const mesh = this.#mesh(geometry, colour, finish)
+    if (finish.edges) this.#own.push(this.#addEdges(mesh, new EdgesGeometry(geometry, finish.edges)))
+    return mesh
+  }
+
+  /** A geometry as a part's mesh, where the key names all that the geometry depends on. */
+  keyed(key: string, make: () => BufferGeometry, colour: string, finish: Finish = {}): Mesh {
+    const geometry = this.#take(key, make)
+    const mesh = this.#mesh(geometry, colour, finish)
+    const { edges } = finish
+    if (edges)
+      this.#addEdges(
+        mesh,
+        this.#take(`edges ${edges} ${key}`, () => new EdgesGeometry(geometry, edges)),
+      )
+    return mesh
   }
 
   /** A round bar; `r2` is the radius at `to`. */
@@ -118,10 +136,9 @@ export class Kit {
     const along = to.clone().sub(from)
     const length = along.length()
     const straight = r1 === r2
-    const geometry = straight
-      ? this.#unit('rod', () => new CylinderGeometry(1, 1, 1, 20))
-      : this.#keep(new CylinderGeometry(r2, r1, 1, 20))
-    const mesh = this.#mesh(geometry, colour, finish)
+    const mesh = straight
+      ? this.keyed('rod', () => new CylinderGeometry(1, 1, 1, 20), colour, finish)
+      : this.keyed(`cone ${r1} ${r2}`, () => new CylinderGeometry(r2, r1, 1, 20), colour, finish)
     if (straight) mesh.scale.set(r1, 1, r1)
     mesh.scale.y = length
     mesh.visible = length > 0
@@ -129,11 +146,7 @@ export class Kit {
   }
 
   ball(at: Vector3, radius: number, colour: string, finish: Finish = {}): Mesh {
-    const mesh = this.#mesh(
-      this.#unit('ball', () => new SphereGeometry(1, 20, 14)),
-      colour,
-      finish,
-    )
+    const mesh = this.keyed('ball', () => new SphereGeometry(1, 20, 14), colour, finish)
     mesh.scale.setScalar(radius)
     mesh.position.copy(at)
     return mesh
@@ -141,11 +154,7 @@ export class Kit {
 
   /** A round plate or pin of height `height` about its middle. */
   disc(at: Vector3, axis: Vector3, radius: number, height: number, colour: string, finish: Finish = {}): Mesh {
-    const mesh = this.#mesh(
-      this.#unit('disc', () => new CylinderGeometry(1, 1, 1, 36)),
-      colour,
-      finish,
-    )
+    const mesh = this.keyed('disc', () => new CylinderGeometry(1, 1, 1, 36), colour, finish)
     mesh.scale.set(radius, height, radius)
     return place(mesh, at, axis)
   }
@@ -178,18 +187,17 @@ export class Kit {
 
   /** A body of revolution about `axis` through `at`; the profile as radius and height along the axis. */
   lathe(at: Vector3, axis: Vector3, profile: Flat[], colour: string, finish: Finish = {}): Mesh {
-    const geometry = this.#keep(
-      new LatheGeometry(
-        profile.map(([r, h]) => new Vector2(r, h)),
-        48,
-      ),
+    const points = () => profile.map(([r, h]) => new Vector2(r, h))
+    return place(
+      this.keyed(`lathe ${profile.join()}`, () => new LatheGeometry(points(), 48), colour, finish),
+      at,
+      axis,
     )
-    return place(this.#mesh(geometry, colour, finish), at, axis)
   }
 
   /** The shadow of a mesh that casts none itself, because it is translucent. */
   shadowOf({ geometry, position, quaternion, scale }: Mesh): Mesh {
-    const material = this.#material(
+    const material = this.#take(
       'shadow',
       () => new MeshBasicMaterial({ colorWrite: false, depthWrite: false, transparent: true }),
     )
@@ -213,10 +221,9 @@ export class Kit {
   ): Mesh {
     const unit = x.clone().normalize()
     const up = square(y, unit)
-    const geometry = new BoxGeometry(...sides).applyMatrix4(
-      new Matrix4().makeBasis(unit, up, unit.clone().cross(up)).setPosition(at),
-    )
-    return this.mesh(geometry, colour, finish)
+    const pose = new Matrix4().makeBasis(unit, up, unit.clone().cross(up)).setPosition(at)
+    const make = () => new BoxGeometry(...sides).applyMatrix4(pose)
+    return this.keyed(`brick ${sides} ${pose.elements}`, make, colour, finish)
   }
 
   /** A plate of the given outline, its middle in the plane of the basis. */
@@ -228,40 +235,43 @@ export class Kit {
     holes: Flat[][] = [],
     finish: Finish = {},
   ): Mesh {
-    const shape = new Shape(outline.map(([x, y]) => new Vector2(x, y)))
-    for (const hole of holes) shape.holes.push(new Path(hole.map(([x, y]) => new Vector2(x, y))))
-    const geometry = new ExtrudeGeometry(shape, { depth: thickness, bevelEnabled: false })
-    return this.mesh(geometry.translate(0, 0, -thickness / 2).applyMatrix4(basis.matrix()), colour, finish)
+    const pose = basis.matrix()
+    const make = () => {
+      const shape = new Shape(outline.map(([x, y]) => new Vector2(x, y)))
+      for (const hole of holes) shape.holes.push(new Path(hole.map(([x, y]) => new Vector2(x, y))))
+      const geometry = new ExtrudeGeometry(shape, { depth: thickness, bevelEnabled: false })
+      return geometry.translate(0, 0, -thickness / 2).applyMatrix4(pose)
+    }
+    return this.keyed(`slab ${outline};${holes.join(';')} ${thickness} ${pose.elements}`, make, colour, finish)
   }
 
   /** Triangles given by their corners, three by three. */
   triangles(corners: Vector3[], colour: string, finish: Finish = {}): Mesh {
-    const geometry = new BufferGeometry()
-    geometry.setAttribute(
-      'position',
-      new Float32BufferAttribute(
-        corners.flatMap((corner) => corner.toArray()),
-        3,
-      ),
-    )
-    geometry.computeVertexNormals()
-    return this.mesh(geometry, colour, finish)
+    const numbers = corners.flatMap((corner) => corner.toArray())
+    const make = () => {
+      const geometry = new BufferGeometry().setAttribute('position', new Float32BufferAttribute(numbers, 3))
+      geometry.computeVertexNormals()
+      return geometry
+    }
+    return this.keyed(`triangles ${numbers}`, make, colour, finish)
   }
 
   /** A line of some pixels' width through points. */
   line(points: Vector3[], colour: string, width: number, stroke: Stroke = {}): Line2 {
-    const geometry = this.#keep(new LineGeometry().setFromPoints(points))
-    const line = new Line2(geometry, this.#stroke(colour, width, stroke))
-    if (stroke.dashed) line.computeLineDistances()
-    return line
+    const numbers = points.flatMap((point) => point.toArray())
+    return new Line2(
+      this.#laid('line', numbers, stroke, () => new LineGeometry().setPositions(numbers)),
+      this.#stroke(colour, width, stroke),
+    )
   }
 
   /** Separate lines, each from an even point to the odd one after it. */
   lines(points: Vector3[], colour: string, width: number, stroke: Stroke = {}): LineSegments2 {
-    const geometry = this.#keep(new LineSegmentsGeometry().setPositions(points.flatMap((point) => point.toArray())))
-    const lines = new LineSegments2(geometry, this.#stroke(colour, width, stroke))
-    if (stroke.dashed) lines.computeLineDistances()
-    return lines
+    const numbers = points.flatMap((point) => point.toArray())
+    return new LineSegments2(
+      this.#laid('lines', numbers, stroke, () => new LineSegmentsGeometry().setPositions(numbers)),
+      this.#stroke(colour, width, stroke),
+    )
   }
 
   /** The hatched line of ISO 3952 from a to b: strokes on the side of `outwards`, one every 1.25 r. */
@@ -292,54 +302,69 @@ export class Kit {
 
   /** A hatched box of ground, as `brick`. */
   hatched(at: Vector3, x: Vector3, y: Vector3, sides: [number, number, number]): Mesh {
-    const geometry = new BoxGeometry(...sides)
-    const { uv, normal } = geometry.attributes
     // About two strokes per 2.5 units on every face, independent of its size.
     const scale = 1 / (2.5 * this.unit)
-    for (let k = 0; k < uv.count; k++) {
-      const [nx, ny] = [Math.abs(normal.getX(k)), Math.abs(normal.getY(k))]
-      const width = nx > 0.5 ? sides[2] : sides[0]
-      const height = ny > 0.5 ? sides[2] : sides[1]
-      uv.setXY(k, uv.getX(k) * width * scale, uv.getY(k) * height * scale)
-    }
     const unit = x.clone().normalize()
     const up = square(y, unit)
-    geometry.applyMatrix4(new Matrix4().makeBasis(unit, up, unit.clone().cross(up)).setPosition(at))
-    const mesh = this.mesh(geometry, this.palette.ground)
-    mesh.material = this.#material('hatched', () => lit({ map: this.#hatching() }))
+    const pose = new Matrix4().makeBasis(unit, up, unit.clone().cross(up)).setPosition(at)
+    const make = () => {
+      const geometry = new BoxGeometry(...sides)
+      const { uv, normal } = geometry.attributes
+      for (let k = 0; k < uv.count; k++) {
+        const [nx, ny] = [Math.abs(normal.getX(k)), Math.abs(normal.getY(k))]
+        const width = nx > 0.5 ? sides[2] : sides[0]
+        const height = ny > 0.5 ? sides[2] : sides[1]
+        uv.setXY(k, uv.getX(k) * width * scale, uv.getY(k) * height * scale)
+      }
+      return geometry.applyMatrix4(pose)
+    }
+    const mesh = this.keyed(`hatched ${sides} ${scale} ${pose.elements}`, make, this.palette.ground)
+    const { ground, view } = this.palette
+    const map = this.#take(`hatching ${ground} ${view}`, () => hatching(this.palette))
+    mesh.material = this.#take(`hatched ${ground} ${view}`, () => lit({ map }))
     return mesh
   }
 
-  /** Frees graphics memory. */
+  /** Frees graphics memory that no other kit uses. */
   dispose(): void {
-    for (const one of [...this.#materials.values(), ...this.#geometries, ...this.#shared.values()]) one.dispose()
-    this.#hatch?.dispose()
-    this.#materials.clear()
-    this.#shared.clear()
-    this.#geometries = []
+    for (const key of this.#taken.keys()) this.stock.release(key)
+    for (const one of this.#own) one.dispose()
+    this.#taken.clear()
+    this.#own = []
   }
 
   #mesh(geometry: BufferGeometry, colour: string, finish: Finish): Mesh {
     const mesh = new Mesh(geometry, this.solid(colour, finish))
     mesh.castShadow = (finish.opacity ?? 1) >= 1
-    if (finish.edges) {
-      const edges = new LineSegments(this.#keep(new EdgesGeometry(geometry, finish.edges)), this.#edge())
-      edges.raycast = () => {}
-      mesh.add(edges)
-    }
     return mesh
   }
 
+  #addEdges(mesh: Mesh, geometry: EdgesGeometry): EdgesGeometry {
+    const edges = new LineSegments(geometry, this.#edge())
+    edges.raycast = () => {}
+    mesh.add(edges)
+    return geometry
+  }
+
+  /** The geometry of a line, with the distances along it if it is dashed. */
+  #laid<T extends LineSegmentsGeometry>(kind: string, numbers: number[], { dashed }: Stroke, make: () => T): T {
+    return this.#take(`${kind} ${dashed} ${numbers}`, () => {
+      const geometry = make()
+      if (dashed) new LineSegments2(geometry).computeLineDistances()
+      return geometry
+    })
+  }
+
   #edge(): Material {
-    return this.#material(
-      'edge',
+    return this.#take(
+      `edge ${this.palette.outline}`,
       () => new LineBasicMaterial({ color: this.palette.outline, transparent: true, opacity: EDGE }),
     )
   }
 
   #stroke(colour: string, width: number, { dashed = false, opacity = 1, over = false }: Stroke): LineMaterial {
-    return this.#material(
-      `line ${colour} ${width} ${dashed} ${opacity} ${over}`,
+    return this.#take(
+      `line ${colour} ${width} ${dashed && this.unit} ${opacity} ${over}`,
       () =>
         new LineMaterial({
           color: colour,
@@ -352,51 +377,38 @@ export class Kit {
           depthTest: !over,
           depthWrite: !over,
         }),
-    ) as LineMaterial
+    )
   }
 
-  #hatching(): CanvasTexture {
-    if (this.#hatch) return this.#hatch
-    const canvas = document.createElement('canvas')
-    const side = (canvas.width = canvas.height = 32)
-    const brush = canvas.getContext('2d')!
-    brush.fillStyle = this.palette.ground
-    brush.fillRect(0, 0, side, side)
-    brush.strokeStyle = this.palette.view
-    brush.lineWidth = 7
-    for (let k = -side; k < 2 * side; k += side / 2) {
-      brush.beginPath()
-      brush.moveTo(k, side + 2)
-      brush.lineTo(k + side + 4, -2)
-      brush.stroke()
-    }
-    this.#hatch = new CanvasTexture(canvas)
-    this.#hatch.wrapS = this.#hatch.wrapT = RepeatWrapping
-    this.#hatch.colorSpace = SRGBColorSpace
-    this.#hatch.anisotropy = 4
-    return this.#hatch
-  }
-
-  #material(key: string, make: () => Material): Material {
-    const known = this.#materials.get(key)
-    if (known) return known
-    const made = make()
-    this.#materials.set(key, made)
+  #take<T extends Material | BufferGeometry | CanvasTexture>(key: string, make: () => T): T {
+    const known = this.#taken.get(key)
+    if (known) return known as T
+    const made = this.stock.take(key, make)
+    this.#taken.set(key, made)
     return made
   }
+}
 
-  #unit(key: string, make: () => BufferGeometry): BufferGeometry {
-    const known = this.#shared.get(key)
-    if (known) return known
-    const made = make()
-    this.#shared.set(key, made)
-    return made
+/** The texture of hatched ground. */
+function hatching({ ground, view }: Palette): CanvasTexture {
+  const canvas = document.createElement('canvas')
+  const side = (canvas.width = canvas.height = 32)
+  const brush = canvas.getContext('2d')!
+  brush.fillStyle = ground
+  brush.fillRect(0, 0, side, side)
+  brush.strokeStyle = view
+  brush.lineWidth = 7
+  for (let k = -side; k < 2 * side; k += side / 2) {
+    brush.beginPath()
+    brush.moveTo(k, side + 2)
+    brush.lineTo(k + side + 4, -2)
+    brush.stroke()
   }
-
-  #keep<T extends BufferGeometry>(geometry: T): T {
-    this.#geometries.push(geometry)
-    return geometry
-  }
+  const texture = new CanvasTexture(canvas)
+  texture.wrapS = texture.wrapT = RepeatWrapping
+  texture.colorSpace = SRGBColorSpace
+  texture.anisotropy = 4
+  return texture
 }
 
 /** Parts cast shadows on the floor only; without code for shadows on themselves their programs are half as long. */

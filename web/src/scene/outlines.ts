@@ -81,13 +81,10 @@ export class Outlines {
     this.#ink.uniforms.chosen.value.set(palette.chosen)
   }
 
-  /**
-   * `width` and `height` of the view in pixels of the page, `ratio` of the screen's to them. A light picture has rough
-   * lines.
-   */
-  resize(width: number, height: number, ratio: number, isLight = false): void {
+  /** `width` and `height` of the view in pixels of the page, `ratio` of the screen's to them. */
+  resize(width: number, height: number, ratio: number): void {
     // Two numbers or so for every pixel of the page, so that lines are smooth.
-    const density = ratio < 1.5 && !isLight ? 2 : ratio
+    const density = ratio < 1.5 ? 2 : ratio
     this.#target.setSize(Math.round(width * density), Math.round(height * density))
     this.#ink.uniforms.texel.value.set(1 / this.#target.width, 1 / this.#target.height)
     this.#ink.uniforms.pixel.value.set(1 / width, 1 / height)

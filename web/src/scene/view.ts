@@ -33,6 +33,7 @@ import { paletteOf } from './palette'
 import { Pointer } from './pointer'
 import { present } from './shape'
 import { isSoftware, whileDragged } from './spare'
+import { Stock } from './stock'
 import { Triad } from './triad'
 
 /** Room round every place that the motion visits, in units. */
@@ -84,6 +85,8 @@ export class View {
     'The graphics context was lost. The view returns when the browser restores it.',
   )
   #palette = paletteOf()
+  /** What designs drawn one after another have in common. */
+  readonly #stock = new Stock()
   #matter: Assembly
   #marks: Assembly
   #floor: Floor
@@ -98,7 +101,7 @@ export class View {
   /** True if the reader turned or moved the view since it was fitted. */
   #turned = false
   #buttons?: HTMLElement
-  /** True while something is dragged and the processor draws: without shadows, in fewer pixels. */
+  /** True while something is dragged and the processor draws: once, without outlines and shadows, in fewer pixels. */
   #isLight = false
   /** Position to take as soon as the view has a size. */
   #wanted?: Pose
@@ -142,7 +145,7 @@ export class View {
       this.canvas,
       () => this.camera,
       () => [...this.#marks.groups, ...this.#matter.groups],
-      () => this.#emphasise(),
+      () => (this.#emphasise(), this.#draw()),
       (selected) => state.choose({ selected }),
     )
     new MotionDrag(this.canvas, this.#controls, state, {
@@ -169,6 +172,7 @@ export class View {
     this.#marks = this.#assembleMarks()
     this.#floor = this.#lay()
     this.#emphasise()
+    this.#draw()
     state.onTime(() => this.#move())
     const remark = () => {
       this.#stale = true
@@ -427,6 +431,7 @@ export class View {
       matter,
       this.#outlines,
       0,
+      this.#stock,
     )
     this.scene.add(...assembly.groups)
     return assembly
@@ -447,6 +452,7 @@ export class View {
       marks,
       this.#outlines,
       MARK_NUMBERS,
+      this.#stock,
     )
     this.scene.add(...assembly.groups)
     return assembly
@@ -517,7 +523,6 @@ export class View {
     this.#outlines.emphasise(
       new Map(parts.map(({ part, number }) => [number, level(part)] as const).filter(([, to]) => to !== 'none')),
     )
-    this.#draw()
   }
 
   #move(): void {
@@ -552,10 +557,15 @@ export class View {
     const { layers } = this.camera
     layers.set(0)
     this.#renderer.clear()
-    this.#renderer.render(this.scene, this.camera)
-    this.#outlines.draw(this.#renderer, this.scene, this.camera)
-    layers.set(OVER)
-    this.#renderer.render(this.scene, this.camera)
+    if (this.#isLight) {
+      layers.enable(OVER)
+      this.#renderer.render(this.scene, this.camera)
+    } else {
+      this.#renderer.render(this.scene, this.camera)
+      this.#outlines.draw(this.#renderer, this.scene, this.camera)
+      layers.set(OVER)
+      this.#renderer.render(this.scene, this.camera)
+    }
     layers.set(0)
     this.#overview?.draw(this.#renderer, this.scene, width, height)
     for (const one of this.#discarded.splice(0)) one.dispose()
@@ -618,6 +628,6 @@ export class View {
     const { width, height } = this.#extent
     this.#renderer.setPixelRatio(ratio)
     this.#renderer.setSize(width, height, false)
-    this.#outlines.resize(width, height, ratio, this.#isLight)
+    this.#outlines.resize(width, height, ratio)
   }
 }

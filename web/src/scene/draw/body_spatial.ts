@@ -231,8 +231,10 @@ function plate(mechanism: Mechanism, kit: Kit, body: number, points: Vector3[], 
       kit.ball(point, PLATE.hinge * s, colour),
     ]
   })
-  const web = new ShapeGeometry(new Shape(outline.map(([x, y]) => new Vector2(x, y)))).applyMatrix4(basis.matrix())
-  return [...pieces, ...held, kit.mesh(web, colour, { opacity: outline.length > 3 ? PLATE.platform : PLATE.web })]
+  const pose = basis.matrix()
+  const web = () => new ShapeGeometry(new Shape(outline.map(([x, y]) => new Vector2(x, y)))).applyMatrix4(pose)
+  const opacity = outline.length > 3 ? PLATE.platform : PLATE.web
+  return [...pieces, ...held, kit.keyed(`web ${outline} ${pose.elements}`, web, colour, { opacity })]
 }
 
 /** The points of a body that lie on one of its hinges, where that is two or more. */

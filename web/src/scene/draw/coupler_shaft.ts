@@ -55,7 +55,11 @@ function bearing(mechanism: Mechanism, kit: Kit, frame: number, place: Vector3, 
   const s = kit.unit
   const at = mechanism.placeInto(frame, place)
   const along = mechanism.into(frame, axis)
-  const ring = kit.mesh(new TorusGeometry(BEARING.ring * s, BEARING.section * s, 12, 28), kit.body(frame))
+  const ring = kit.keyed(
+    `bearing ${s}`,
+    () => new TorusGeometry(BEARING.ring * s, BEARING.section * s, 12, 28),
+    kit.body(frame),
+  )
   ring.position.copy(at)
   ring.quaternion.setFromUnitVectors(new Vector3(0, 0, 1), along)
   if (frame > 0) return new Group().add(ring)

@@ -26,8 +26,9 @@ export const constantVelocity: DrawJoint = (mechanism, kit, joint) => {
   const other = joint.axis2 ?? joint.axis_j
   const back = towardsRest(mechanism, joint.body_i, p, along(shaft?.clone().negate(), joint.body_i))
   const ahead = towardsRest(mechanism, joint.body_j, q, along(other ? new Vector3(...other) : undefined, joint.body_j))
-  const bell = kit.mesh(
-    new SphereGeometry(BELL * r, 28, 14, 0, 2 * Math.PI, 0, OPENING * Math.PI),
+  const bell = kit.keyed(
+    `bell ${r}`,
+    () => new SphereGeometry(BELL * r, 28, 14, 0, 2 * Math.PI, 0, OPENING * Math.PI),
     kit.body(joint.body_i),
     { open: true },
   )

@@ -45,8 +45,13 @@ export const spherical: DrawJoint = (mechanism, kit, joint) => {
         .into(on, mechanism.alongAt(body, towardsRest(mechanism, body, at, mechanism.into(body, mechanism.up)), 0))
         .negate()
     : towardsRest(mechanism, on, own, up)
-  const cup = kit.mesh(new SphereGeometry(CUP * r, 24, 12, 0, 2 * Math.PI, 0, OPENING * Math.PI), kit.body(on), {
-    open: true,
-  })
+  const cup = kit.keyed(
+    `cup ${r}`,
+    () => new SphereGeometry(CUP * r, 24, 12, 0, 2 * Math.PI, 0, OPENING * Math.PI),
+    kit.body(on),
+    {
+      open: true,
+    },
+  )
   return [piece(body, kit.ball(at, BALL * r, steel)), piece(on, place(cup, own, direction))]
 }

@@ -87,8 +87,9 @@ function spring(kit: Kit, length: number, damped: boolean): Strut {
   const { rod: grey, steel } = kit.palette
   // Made with its initial length, so that stretching hardly changes its wire.
   const height = Math.max((COIL.to - COIL.from) * length, s)
-  const helix = new Helix(COIL.radius * s, height, COIL.turns)
-  const coil = kit.mesh(new TubeGeometry(helix, 240, COIL.wire * s, 8).translate(0, -height / 2, 0), grey)
+  const wound = () =>
+    new TubeGeometry(new Helix(COIL.radius * s, height, COIL.turns), 240, COIL.wire * s, 8).translate(0, -height / 2, 0)
+  const coil = kit.keyed(`coil ${s} ${height}`, wound, grey)
   const seats = [0, 1].map(() => bar(kit, COIL.seat * s, grey))
   const [body, piston] = [bar(kit, INSIDE.body * s, grey), bar(kit, (damped ? INSIDE.rod : ROD) * s, steel)]
   const object = new Group().add(coil, ...seats, piston, ...(damped ? [body] : []))

@@ -1,4 +1,4 @@
-import { Group, InstancedMesh, Matrix4, SphereGeometry, Vector3 } from 'three'
+import { Group, InstancedMesh, Matrix4, type Mesh, SphereGeometry, Vector3 } from 'three'
 import { stepAt } from '../../curve'
 import { roundBelow } from '../../format'
 import { above, ABOVE, over } from '../arrow'
@@ -43,7 +43,7 @@ function trace(mechanism: Mechanism, kit: Kit, [body, point]: PathPoint): Drawab
     group.add(above(kit.line(piece, colour, LINE, { over: true }), ABOVE.trace))
   group.add(dots(kit, equalTimes(mechanism.report.times).map(at).filter(solved)))
 
-  const present = above(over(kit, new SphereGeometry(PRESENT * kit.unit, 20, 14), colour), ABOVE.trace)
+  const present = above(dot(kit, PRESENT * kit.unit, colour), ABOVE.trace)
   const follow = (frame: Frame) => {
     present.visible = frame.visible(body)
     if (present.visible) present.position.copy(frame.at(body, place)).add(lift)
@@ -75,8 +75,12 @@ export function equalTimes(times: Float32Array): number[] {
   return Array.from({ length: count + 1 }, (_, k) => stepAt(times, Math.min(times[0] + k * interval, last)))
 }
 
+function dot(kit: Kit, radius: number, colour: string): Mesh {
+  return over(kit, `dot ${radius}`, () => new SphereGeometry(radius, 20, 14), colour)
+}
+
 function dots(kit: Kit, places: Vector3[]): InstancedMesh {
-  const one = over(kit, new SphereGeometry(DOT * kit.unit, 14, 10), kit.palette.trace)
+  const one = dot(kit, DOT * kit.unit, kit.palette.trace)
   const all = new InstancedMesh(one.geometry, one.material, places.length)
   places.forEach((place, k) => all.setMatrixAt(k, new Matrix4().setPosition(place)))
   return above(all, ABOVE.trace)
