@@ -60,6 +60,20 @@ export function setText(element: Element, text: string): void {
   if (element.textContent !== text) element.textContent = text
 }
 
+const sentences = new WeakMap<Element, string>()
+
+/** Sets a sentence with its `names` as code, if it differs. */
+export function setProse(element: Element, text: string): void {
+  if (sentences.get(element) === text) return
+  sentences.set(element, text)
+  element.replaceChildren(...prose(text))
+}
+
+/** Sets an attribute of an element if it differs: an unchanged one costs no style. */
+export function setAttribute(element: Element, name: string, value: string | boolean): void {
+  if (element.getAttribute(name) !== String(value)) element.setAttribute(name, String(value))
+}
+
 const DARK = '(prefers-color-scheme: dark)'
 
 /**

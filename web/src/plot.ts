@@ -1,6 +1,6 @@
 import uPlot from 'uplot'
 import 'uplot/dist/uPlot.min.css'
-import { css, el, keepFocus, prose, setText, svg } from './dom'
+import { css, el, keepFocus, prose, setProse, setText, svg } from './dom'
 import { number, pretty, titled } from './format'
 import { abscissaOf, type Content, drawnLines, drawnRange, drawnSteps, type Line } from './content'
 import { decades, nearestStep, padded, positive, stepAt, valueAt, type Curve, withGaps } from './curve'
@@ -65,6 +65,8 @@ export class Plot {
   /** Keys of the drawn axes and series, and of the legend: what is the same stays. */
   #drawn = ''
   #listed = ''
+  /** Styles of the lines, and all but their numbers that a picture of them depends on. */
+  #look = ''
   #readings: { line: Line; output: HTMLElement }[] = []
   #band = el('div', { class: 'band', hidden: true })
   /** Start of a drag that selects the visible part: the axis, and the position along it, px. */
@@ -182,10 +184,7 @@ export class Plot {
     this.#stale = false
     this.#range = undefined
     setText(this.#title, titled(content.title, content.message ? '' : content.unit))
-    if (this.#caption.dataset.text !== (content.caption ?? '')) {
-      this.#caption.dataset.text = content.caption ?? ''
-      this.#caption.replaceChildren(...prose(content.caption ?? ''))
-    }
+    setProse(this.#caption, content.caption ?? '')
     const [first, last] = this.#all()
     this.#closer.hidden = this.#large.hidden = content.message !== undefined || first === last
     this.#whole.hidden = (content.part ?? content.upright) === undefined || this.#closer.hidden
@@ -200,14 +199,24 @@ export class Plot {
     const shapes = lines.map(({ marks }) => marks !== undefined)
     const key = JSON.stringify([unit, over?.label, over?.unit, logarithmic, shapes, css('--muted'), css('--rule')])
     const values = this.#data(lines)
+    const { wanted, contacts, equal, part, upright } = content
+    const styles = lines.map(({ color, width, dash, marks }) => ({
+      color,
+      width: marks ? MARK : (width ?? USUAL_LINE),
+      dash,
+    }))
+    const look = JSON.stringify([styles, wanted, contacts, equal, part, upright])
     if (this.#uplot && key === this.#drawn) {
-      lines.forEach(({ width, dash, marks }, k) =>
-        Object.assign(this.#uplot!.series[k + 1], { width: marks ? MARK : (width ?? USUAL_LINE), dash }),
-      )
+      const isSame = look === this.#look && !this.overlay && isSameData(this.#uplot.data, values)
+      this.#look = look
+      // Sensitivities, for one, are those of the last design until the hand lets go.
+      if (isSame) return this.#showTime()
+      styles.forEach(({ width, dash }, k) => Object.assign(this.#uplot!.series[k + 1], { width, dash }))
       this.#uplot.setData(values)
       return
     }
     this.#drawn = key
+    this.#look = look
     this.#uplot?.destroy()
     this.#corner = this.#from = undefined
     this.area.replaceChildren()
@@ -568,6 +577,20 @@ export class Plot {
       setText(output, figure4(value, unit))
     }
   }
+}
+
+/** True if curves are equal, number by number. */
+function isSameData(a: uPlot.AlignedData, b: uPlot.AlignedData): boolean {
+  const [before, now] = [a, b] as unknown as (ArrayLike<number | null>[] | null)[][]
+  const isSame = (x: ArrayLike<number | null>, y: ArrayLike<number | null>) => {
+    if (x.length !== y.length) return false
+    for (let k = 0; k < x.length; k++) if (!Object.is(x[k], y[k])) return false
+    return true
+  }
+  return (
+    before.length === now.length &&
+    before.every((pair, k) => pair === now[k] || pair!.every((list, side) => isSame(list, now[k]![side])))
+  )
 }
 
 function button(testId: string, title: string, path: string, onclick: () => void): HTMLButtonElement {

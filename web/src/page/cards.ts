@@ -1,5 +1,5 @@
 import { courseRange, slopeAt, slopeAlone, stepAt } from '../curve'
-import { el, setText } from '../dom'
+import { el, setAttribute, setText } from '../dom'
 import { number, per, pretty, signed } from '../format'
 import { aboutQuantity } from '../glossary'
 import type { Value } from '../payload'
@@ -100,6 +100,7 @@ function card(state: State, value: Value, index: number): Card {
     verdict,
   )
   pointing(state, element, () => value.quantity ?? undefined)
+  const over = value.quantity === null ? undefined : travelOf(state.report, value.quantity)
   const show = () => {
     const now = state.value(index)
     const before = state.former ? (state.former.values[index] ?? null) : value.value
@@ -107,10 +108,9 @@ function card(state: State, value: Value, index: number): Card {
     const by = now === null || before === null ? null : now - before
     const known = state.isCompared && by !== null && (!isStatic(value) || Math.abs(by) > noise(now!))
     change.hidden = !known
-    change.className = 'delta'
     if (known) showChange(change, now!, by!, value.target)
-    if (isStatic(value)) setText(motion, motionText(state, value))
-    element.setAttribute('aria-pressed', String(value.quantity !== null && value.quantity === state.choice.quantity))
+    if (isStatic(value)) setText(motion, motionText(state, value, over))
+    setAttribute(element, 'aria-pressed', value.quantity !== null && value.quantity === state.choice.quantity)
     if (value.target) setText(verdict, showTarget(scale, value.target, now))
   }
   return { element, show }
@@ -123,7 +123,7 @@ function whatOf({ wheels }: Report, { what }: Value): string {
 }
 
 /** Minimum and maximum of the curve over the motion with their changes, and the slope over wheel travel. */
-function motionText(state: State, { quantity, time, unit }: Value): string {
+function motionText(state: State, { quantity, time, unit }: Value, over: number | undefined): string {
   const index = quantity!
   const { times, quantities } = state.report
   const range = courseRange(state.course(index), times)
@@ -137,19 +137,23 @@ function motionText(state: State, { quantity, time, unit }: Value): string {
     return `${number(rounded(value, size), 3)}${changed}`
   }
   const ends = range[1] - range[0] > noise(size) ? `${end(range[0], before?.[0])} … ${end(range[1], before?.[1])}` : ''
-  const gradient = slopeText(state, index, time ?? 0, unit)
+  const gradient = over === undefined ? '' : slopeText(state, index, over, time ?? 0, unit)
   return [ends, gradient].filter(Boolean).join(' · ')
+}
+
+/** The wheel travel on the side of a quantity; undefined where there is none, and of the travel itself. */
+function travelOf(report: Report, index: number): number | undefined {
+  const travel = report.quantities.find(isTravel)?.index
+  const over = travel === undefined ? undefined : onSideOf(report, travel, index)
+  return over === index ? undefined : over
 }
 
 /**
  * Slope of a quantity over wheel travel at a time: of the motion itself if it has one degree of freedom, else while the
  * driver that moves the wheel moves alone, as far as that is known of the present design.
  */
-function slopeText(state: State, index: number, time: number, unit: string): string {
+function slopeText(state: State, index: number, over: number, time: number, unit: string): string {
   const { report, sensitivityReport } = state
-  const travel = report.quantities.find(isTravel)?.index
-  const over = travel === undefined ? undefined : onSideOf(report, travel, index)
-  if (over === undefined || over === index) return ''
   const step = Math.round(stepAt(report.times, time))
   let value = NaN
   if (hasOneFreedom(report)) {
@@ -173,11 +177,11 @@ function select(state: State, { quantity, time }: Value): void {
 
 /** Better and worse are said only against a target, by colour and arrow. */
 function showChange(change: HTMLElement, now: number, by: number, target: Target | null): void {
-  if (Math.abs(by) <= noise(now)) return setText(change, '±0')
-  const closer = target ? miss(now - by, target) - miss(now, target) : 0
+  const isSame = Math.abs(by) <= noise(now)
+  const closer = target && !isSame ? miss(now - by, target) - miss(now, target) : 0
   const verdict = closer > 0 ? 'better' : closer < 0 ? 'worse' : ''
-  setText(change, `${signed(by, 3)}${verdict ? ` ${verdict}` : ''}`)
-  if (verdict) change.classList.add(verdict)
+  setText(change, isSame ? '±0' : `${signed(by, 3)}${verdict ? ` ${verdict}` : ''}`)
+  setAttribute(change, 'class', `delta ${verdict}`.trimEnd())
 }
 
 function miss(value: number, [low, high]: Target): number {

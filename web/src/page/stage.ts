@@ -1,4 +1,4 @@
-import { el } from '../dom'
+import { el, setText } from '../dom'
 import type { Look } from '../scene/camera'
 import { openingStep } from '../scene/opening'
 import { hasWebGL, type Pose, View } from '../scene/view'
@@ -142,7 +142,7 @@ function ghostKey(state: State): HTMLElement {
     const { isCompared, former, rigid } = state
     element.hidden = !isCompared && !rigid
     const solid = state.isPredicted ? '; solid: predicted to first order' : ''
-    name.textContent = isCompared ? `${former?.name ?? 'original'}${solid}` : (rigid?.name ?? '')
+    setText(name, isCompared ? `${former?.name ?? 'original'}${solid}` : (rigid?.name ?? ''))
   }
   state.onChoice(sync)
   sync()

@@ -1,4 +1,4 @@
-import { el, prose } from '../dom'
+import { el, prose, setProse } from '../dom'
 import { effects, type Effect } from '../effect'
 import { figure, pretty, roundBelow, signed } from '../format'
 import { derivativeUnit, orderedName, type Variable } from '../report'
@@ -98,8 +98,8 @@ export function variables(state: State, limits?: VariableLimits): HTMLElement {
     for (const item of rows) item.sync()
     resetAll.hidden = !state.changed
     const variable = report.variables[choice.variable]
-    shortfall.replaceChildren(...prose(state.shortfall && `${state.shortfall} `))
-    description.replaceChildren(...prose(statusOf(state) + capitalised(variable?.note || variable?.description || '')))
+    setProse(shortfall, state.shortfall && `${state.shortfall} `)
+    setProse(description, statusOf(state) + capitalised(variable?.note || variable?.description || ''))
     if (choice.variable === shown) return
     shown = choice.variable
     const { element } = rows[shown]

@@ -56,6 +56,8 @@ export interface Stroke {
   opacity?: number
   /** Over everything else. */
   over?: boolean
+  /** Names all that the points depend on, where that is shorter than the points. */
+  key?: string
 }
 
 /** Dashes and gaps in units. */
@@ -98,6 +100,8 @@ export class Kit {
         depthWrite: !clear,
         side: clear || open ? DoubleSide : FrontSide,
         flatShading: facets,
+        // Back and front of a translucent part are of one colour: one pass draws both, and needs one program.
+        forceSinglePass: true,
       })
     })
   }
@@ -347,8 +351,8 @@ export class Kit {
   }
 
   /** The geometry of a line, with the distances along it if it is dashed. */
-  #laid<T extends LineSegmentsGeometry>(kind: string, numbers: number[], { dashed }: Stroke, make: () => T): T {
-    return this.#take(`${kind} ${dashed} ${numbers}`, () => {
+  #laid<T extends LineSegmentsGeometry>(kind: string, numbers: number[], { dashed, key }: Stroke, make: () => T): T {
+    return this.#take(`${kind} ${dashed} ${key ?? numbers}`, () => {
       const geometry = make()
       if (dashed) new LineSegments2(geometry).computeLineDistances()
       return geometry

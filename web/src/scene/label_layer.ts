@@ -50,6 +50,7 @@ export class LabelLayer {
     this.placed = placeLabels(spots.slice(0, MOST), { width, height, top: TOP }, onScreen(middle), (text) =>
       this.#wide(text),
     )
+    if (this.placed.length === 0 && this.element.childElementCount === 0) return
     this.element.setAttribute('viewBox', `0 0 ${width} ${height}`)
     this.element.replaceChildren(
       ...this.placed.map(({ spot, x, y }) => svg('line', { x1: spot.x, y1: spot.y, x2: x, y2: y })),

@@ -41,10 +41,6 @@ type Place = readonly [number, number, number]
 export class Mechanism {
   /** Steps at which the motion is sampled, where its extent matters. */
   readonly moments: number[]
-  /** Every place that a hardpoint or joint visits. */
-  readonly sweep: Vector3[]
-  readonly box: Box3
-  readonly centre: Vector3
   /** Diagonal of the box round the sweep. */
   readonly size: number
   /** Unit of all glyphs: about the radius of a rod. It stays within the visible range, see `sizeTo`. */
@@ -64,6 +60,11 @@ export class Mechanism {
   #layers: number[]
   #tints: number[]
   #slides: (Slide | undefined)[]
+  /** Places of the joints of each body. */
+  #joined: Vector3[][]
+  #sweep?: Vector3[]
+  #box?: Box3
+  #shapes = new Map<number, Vector3[]>()
 
   /** `base`: the loaded design, if this is a change of it. `former`: the design that is drawn dashed. */
   constructor(
@@ -79,10 +80,7 @@ export class Mechanism {
       joined[joint.body_i].push(new Vector3(...joint.at_i))
       joined[joint.body_j].push(new Vector3(...joint.at_j))
     }
-    this.sweep = this.#visited(joined)
-    this.box = new Box3().setFromPoints(this.sweep)
-    if (this.box.isEmpty()) this.box.expandByPoint(new Vector3())
-    this.centre = this.box.getCenter(new Vector3())
+    this.#joined = joined
     this.size = base?.size ?? (this.box.getSize(new Vector3()).length() || 1)
     this.#places = joined.map((places) => this.distinct(places))
     this.#natural = base ? base.#natural : this.#unit()
@@ -99,6 +97,22 @@ export class Mechanism {
     this.#layers = base ? base.#layers : this.plane ? this.#stack() : report.bodies.map(() => 0)
     this.topLayer = Math.max(0, ...this.#layers)
     this.#slides = report.joints.map((joint) => slideOf(this, joint))
+  }
+
+  /** Every place that a hardpoint or joint visits. */
+  get sweep(): Vector3[] {
+    return (this.#sweep ??= this.#visited(this.#joined))
+  }
+
+  get box(): Box3 {
+    if (this.#box) return this.#box
+    this.#box = new Box3().setFromPoints(this.sweep)
+    if (this.#box.isEmpty()) this.#box.expandByPoint(new Vector3())
+    return this.#box
+  }
+
+  get centre(): Vector3 {
+    return this.box.getCenter(new Vector3())
   }
 
   /**
@@ -169,6 +183,12 @@ export class Mechanism {
 
   /** The points that shape a body, in its frame: measured points only while there are fewer than three others. */
   shapePoints(body: number): Vector3[] {
+    let found = this.#shapes.get(body)
+    if (!found) this.#shapes.set(body, (found = this.#shapePoints(body)))
+    return found.map((point) => point.clone())
+  }
+
+  #shapePoints(body: number): Vector3[] {
     const { skeleton, roles } = this.report.bodies[body]
     const point = (k: number) => new Vector3(...skeleton[k])
     const indices = skeleton.map((_, k) => k)

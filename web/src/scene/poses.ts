@@ -22,8 +22,11 @@ export function poseAt(poses: Curve, step: number): Pose | undefined {
 }
 
 function read(poses: Curve, k: number): Pose {
-  const [x, y, z, qw, qx, qy, qz] = poses.subarray(k * STRIDE, (k + 1) * STRIDE)
-  return { place: new Vector3(x, y, z), turn: new Quaternion(qx, qy, qz, qw) }
+  const at = k * STRIDE
+  return {
+    place: new Vector3(poses[at], poses[at + 1], poses[at + 2]),
+    turn: new Quaternion(poses[at + 4], poses[at + 5], poses[at + 6], poses[at + 3]),
+  }
 }
 
 const SHIFT = 6

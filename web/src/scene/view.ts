@@ -1,7 +1,7 @@
 import { PCFShadowMap, type Ray, Raycaster, Scene, Vector2, Vector3, WebGLRenderer } from 'three'
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
 import { valueAt } from '../curve'
-import { el, onSchemeChange } from '../dom'
+import { el, onSchemeChange, setText } from '../dom'
 import { motionGltf } from '../export/gltf'
 import { viewSvg } from '../export/view_svg'
 import { number } from '../format'
@@ -444,7 +444,7 @@ export class View {
     const texts = [forces, change !== undefined && `Arrows: effect of ${changeText(change, variable)}`].filter(
       (words) => words,
     )
-    this.#arrows.textContent = texts.map((words) => `${words}, `).join('')
+    setText(this.#arrows, texts.map((words) => `${words}, `).join(''))
     const assembly = new Assembly(
       this.#matter.mechanism,
       this.#palette,

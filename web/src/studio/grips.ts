@@ -2,7 +2,7 @@ import './grips.css'
 import { Quaternion, Vector3 } from 'three'
 import { entry } from '../amount'
 import { contactSentences } from '../clearance'
-import { el, prose, svg } from '../dom'
+import { el, setAttribute, setProse, setText, svg } from '../dom'
 import type { MovableHardpoint, OpenReply } from '../engine/protocol'
 import { pretty } from '../format'
 import { NumberField } from '../page/number_field'
@@ -349,7 +349,7 @@ export class Grips {
       const part = Number(by.getComponent(k).toPrecision(6))
       return this.mover.differ(part, 0) ? [`${axis} ${signed(part)}`] : []
     })
-    this.#label.textContent = parts.length > 0 ? `${parts.join('  ')} ${pretty(this.state.report.units.length)}` : '0'
+    setText(this.#label, parts.length > 0 ? `${parts.join('  ')} ${pretty(this.state.report.units.length)}` : '0')
     this.#label.hidden = false
   }
 
@@ -522,11 +522,12 @@ export class Grips {
     const touching = this.on && this.state.changed ? contactSentences(this.state) : []
     const words = [this.state.refusal || this.state.bound, ...touching].filter(Boolean).join(' ')
     this.#refusal.classList.toggle('hint', !words)
-    this.#refusal.replaceChildren(...prose(words || hint))
+    setProse(this.#refusal, words || hint)
     this.#refusal.title = words
-    this.#name.textContent = this.#name.title = chosen?.grip.name ?? 'No point chosen'
+    setText(this.#name, chosen?.grip.name ?? 'No point chosen')
+    setAttribute(this.#name, 'title', this.#name.textContent)
     this.#directionButtons.forEach((button, k) =>
-      button.setAttribute('aria-pressed', String(this.#offered[k] === this.#direction)),
+      setAttribute(button, 'aria-pressed', this.#offered[k] === this.#direction),
     )
     for (const { input } of this.#fields) input.disabled = !chosen
     this.#reset.disabled = !chosen
@@ -540,7 +541,7 @@ export class Grips {
       moved ||= changed
       field.show(now, all)
       field.input.classList.toggle('changed', changed)
-      this.#deltas[k].textContent = changed ? signed(Number((now - original).toPrecision(6))) : ''
+      setText(this.#deltas[k], changed ? signed(Number((now - original).toPrecision(6))) : '')
     })
     this.#reset.disabled = !moved
   }

@@ -122,6 +122,8 @@ export class Studio {
   #recalled?: Choices
   /** Drivers that move independently in the motion of the model; undefined if curves over travel are no loops. */
   #drivers?: readonly string[]
+  /** The text that was parsed last for the cases of these drivers. */
+  #parsed?: { text: string; drivers: readonly string[]; motions: SeparateMotions | undefined }
   /** Report and model that the page was made of. */
   readonly #first: { report: Report; model: ModelText }
   readonly #recorded: readonly VariableSetting[]
@@ -655,7 +657,16 @@ export class Studio {
 
   /** Cases with one moving driver each, which the page derives from the text of the model; undefined if it has none. */
   get #motions(): SeparateMotions | undefined {
-    return this.#drivers && separateMotions(this.model.text, this.#drivers)
+    return this.#motionsOf(this.model.text)
+  }
+
+  /** The same of another text; a text is parsed once. */
+  #motionsOf(text: string): SeparateMotions | undefined {
+    const drivers = this.#drivers
+    if (!drivers) return undefined
+    if (this.#parsed?.text !== text || this.#parsed.drivers !== drivers)
+      this.#parsed = { text, drivers, motions: separateMotions(text, drivers) }
+    return this.#parsed.motions
   }
 
   /** True if the case that is shown is not in the text of the model. */
@@ -682,7 +693,7 @@ export class Studio {
   /** A model as the engine solves it: with the derived cases in its text, if one of them is shown. */
   #solvable(model: ModelText): ModelText {
     if (model.case === null || caseNames(model.text).includes(model.case)) return model
-    const motions = this.#drivers && separateMotions(model.text, this.#drivers)
+    const motions = this.#motionsOf(model.text)
     if (motions?.names.includes(model.case)) return { ...model, text: motions.text }
     // The text that is opened has no such driver any more.
     return this.#isDerived ? { ...model, case: null } : model
@@ -691,7 +702,7 @@ export class Studio {
   /** A text, with the derived cases if a metric is of one of them. */
   #textFor(text: string, metric: { case?: string } | { metric: string }): string {
     const isOfCase = 'case' in metric && metric.case !== undefined && this.#isDerived
-    return (isOfCase && this.#drivers && separateMotions(text, this.#drivers)?.text) || text
+    return (isOfCase && this.#motionsOf(text)?.text) || text
   }
 
   /** Notes the design as a step of the history, or as part of what the hand does. */

@@ -32,7 +32,7 @@ const SLIM = 0.75
  * Spring: radius of the coil and of its wire, turns; radius and thickness of its seats, and their positions along the
  * length.
  */
-const COIL = { radius: 3.2, wire: 0.55, turns: 6.5, seat: 3.9, seatHeight: 0.7, from: 0.06, to: 0.66 }
+const COIL = { radius: 3.2, wire: 0.55, turns: 6.5, seat: 3.9, seatHeight: 0.7, from: 0.06, to: 0.66, step: 1.05 }
 /** Body and rod of the damper inside a spring. */
 const INSIDE = { body: 1.7, rod: 0.7, bodyFrom: 0.5, rodTo: 0.6 }
 
@@ -85,8 +85,8 @@ function cylinder(kit: Kit, slim: number, length: number): Strut {
 function spring(kit: Kit, length: number, damped: boolean): Strut {
   const s = kit.unit
   const { rod: grey, steel } = kit.palette
-  // Made with its initial length, so that stretching hardly changes its wire.
-  const height = Math.max((COIL.to - COIL.from) * length, s)
+  // Made with about its initial length, so that stretching hardly changes its wire; small changes of a design share it.
+  const height = COIL.step ** Math.round(Math.log(Math.max((COIL.to - COIL.from) * length, s)) / Math.log(COIL.step))
   const wound = () =>
     new TubeGeometry(new Helix(COIL.radius * s, height, COIL.turns), 240, COIL.wire * s, 8).translate(0, -height / 2, 0)
   const coil = kit.keyed(`coil ${s} ${height}`, wound, grey)

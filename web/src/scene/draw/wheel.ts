@@ -15,6 +15,9 @@ const CIRCLES = [
 /** Spokes: number, inner radius, offset outboard in half widths, line in px, opacity. */
 const SPOKES = { count: 5, from: 0.2, side: 0.25, line: 2.2, opacity: 0.28 }
 
+const X = new Vector3(1, 0, 0)
+const Z = new Vector3(0, 0, 1)
+
 /** Road wheels: a tyre that casts a shadow and hides nothing. */
 export function wheels(mechanism: Mechanism, kit: Kit): Drawable[] {
   return mechanism.report.wheels.map((wheel, index) => ({
@@ -27,7 +30,8 @@ export function wheels(mechanism: Mechanism, kit: Kit): Drawable[] {
 function tyre(kit: Kit, { centre, axis, radius }: WheelMark, up: Vector3): Group {
   const { palette } = kit
   const half = HALF_WIDTH * radius
-  const basis = new Basis(new Vector3(...centre.at), new Vector3(...axis), up)
+  // Made about its own axis z, so that what it is made of depends on its radius only.
+  const basis = new Basis(new Vector3(), Z, X)
   const on = (r: number, angle: number, side: number) =>
     basis.from([r * radius * Math.cos(angle), r * radius * Math.sin(angle)], side * half)
   const rubber = kit.lathe(basis.origin, basis.normal, tyreSection(radius), palette.tyre, { opacity: palette.glass })
@@ -37,7 +41,7 @@ function tyre(kit: Kit, { centre, axis, radius }: WheelMark, up: Vector3): Group
         Array.from({ length: 97 }, (_, k) => on(r, (k * Math.PI) / 48, height)),
         palette.tyre,
         line,
-        { opacity },
+        { opacity, key: `circle ${r * radius} ${height * half}` },
       ),
     ),
   )
@@ -45,10 +49,13 @@ function tyre(kit: Kit, { centre, axis, radius }: WheelMark, up: Vector3): Group
     on(SPOKES.from, angle, SPOKES.side),
     on(RIM, angle, SPOKES.side),
   ])
-  return new Group().add(
+  const wheel = new Group().add(
     rubber,
     kit.shadowOf(rubber),
     ...circles,
-    kit.lines(spokes, palette.tyre, SPOKES.line, { opacity: SPOKES.opacity }),
+    kit.lines(spokes, palette.tyre, SPOKES.line, { opacity: SPOKES.opacity, key: `spokes ${radius}` }),
   )
+  wheel.applyMatrix4(new Basis(new Vector3(...centre.at), new Vector3(...axis), up).matrix())
+  // Placed by its parts' group, as all that is drawn.
+  return new Group().add(wheel)
 }
