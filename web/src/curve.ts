@@ -108,9 +108,16 @@ export function slopeAlone(y: Curve, x: Curve): Curve {
   return y.map((value, k) => (Math.abs(x[k]) > minimum ? value / x[k] : NaN))
 }
 
-/** A sensitivity at a fixed abscissa rather than a fixed time: `dy - slope dx`. */
+/** Part of the larger of two curves in single precision below which their difference is rounding. */
+const SINGLE = 1e-6
+
+/** A sensitivity at a fixed abscissa rather than a fixed time: `dy - slope dx`, 0 where that is rounding. */
 export function atFixedAbscissa(dy: Curve, dx: Curve, slope: Curve): Curve {
-  return dy.map((value, k) => value - slope[k] * dx[k])
+  const least = SINGLE * peak(dy)
+  return dy.map((value, k) => {
+    const left = value - slope[k] * dx[k]
+    return Math.abs(left) <= least ? 0 : left
+  })
 }
 
 /** A curve with its abscissa; none if that is time, which is the same for all designs. */

@@ -90,6 +90,8 @@ test('where the abscissa is about to turn and the other goes on, there is a gap 
 test('a sensitivity at a fixed abscissa leaves out what the abscissa moves', () => {
   // y = (x - b)^2 and x = t + b: at fixed t nothing depends on b, at fixed x dy/db = -2 (x - b).
   expect([...atFixedAbscissa(curve(0, 0), curve(1, 1), curve(0, 4))]).toEqual([0, -4])
+  // Feed and spindle turn further together: what is left is rounding.
+  expect([...atFixedAbscissa(curve(0, 2, 2), curve(0, 4, 1), curve(0.5, 0.5 + 1e-8, 0.5))]).toEqual([0, 0, 1.5])
 })
 
 test('the nearest step prefers the branch that is shown', () => {

@@ -8,6 +8,7 @@ import { Kit } from '../src/scene/kit'
 import { Mechanism } from '../src/scene/mechanism'
 import { Outlines } from '../src/scene/outlines'
 import { paletteOf } from '../src/scene/palette'
+import { Stock } from '../src/scene/stock'
 import { State } from '../src/state'
 import { reportOf } from './payload'
 import { schemes } from './schemes'
@@ -47,6 +48,17 @@ function vertices(object: Object3D): Vector3[] {
         found.push(new Vector3().fromBufferAttribute(places, k).applyMatrix4(one.matrixWorld))
     }
   })
+  return found
+}
+
+/** Geometries and materials of what is drawn, by what they are of. */
+function held(drawn: Drawable[]): Map<EventDispatcher<{ dispose: object }>, string> {
+  const found = new Map<EventDispatcher<{ dispose: object }>, string>()
+  for (const { object, part } of drawn)
+    object.traverse((one) => {
+      const { geometry, material } = one as Partial<Mesh>
+      for (const held of [geometry, material].flat()) if (held) found.set(held, `${held.type} of ${part.name}`)
+    })
   return found
 }
 
@@ -149,15 +161,25 @@ describe.each(Object.entries(models))('of %s', async (_, address) => {
     ).toBeGreaterThan(0.85)
   })
 
+  test('a design takes what it has in common with the one drawn before, which is freed with the last of them', () => {
+    const stock = new Stock()
+    const kits = [0, 1].map(() => new Kit(mechanism, LIGHT, stock))
+    const [before, after] = kits.map((kit) =>
+      held(matter.flatMap((draw) => draw(mechanism, kit, new State(report).choice))),
+    )
+    const shared = new Map([...after].filter(([one]) => before.has(one)))
+    expect(shared.size).toBeGreaterThan(0.75 * after.size)
+    for (const one of shared.keys()) one.addEventListener('dispose', () => shared.delete(one))
+    const { size } = shared
+    kits[0].dispose()
+    expect(shared.size).toBe(size)
+    kits[1].dispose()
+    expect([...shared.values()]).toEqual([])
+  })
+
   test('nothing drawn stays on the graphics card when its kit is freed', () => {
-    const kept = new Map<EventDispatcher<{ dispose: object }>, string>()
-    for (const { object, part } of drawn) {
-      object.traverse((one) => {
-        const { geometry, material } = one as Partial<Mesh>
-        for (const held of [geometry, material].flat()) if (held) kept.set(held, `${held.type} of ${part.name}`)
-      })
-    }
-    for (const held of kept.keys()) held.addEventListener('dispose', () => kept.delete(held))
+    const kept = held(drawn)
+    for (const one of kept.keys()) one.addEventListener('dispose', () => kept.delete(one))
     expect(kept.size).toBeGreaterThan(0)
     kit.dispose()
     expect([...kept.values()]).toEqual([])

@@ -330,6 +330,27 @@ describe('without WebGL', () => {
 })
 
 describe('what went wrong', () => {
+  test.each([1024, 1440])('names in the legends are whole in a window %d wide', async (width) => {
+    const { page } = await visit(browser, models.delta, { viewport: { width, height: 768 } })
+    await drawn(page)
+    const labels = page.locator('.legend .label:visible')
+    expect(await labels.count()).toBeGreaterThan(3)
+    const cut = await labels.evaluateAll((all) =>
+      all
+        .filter((label) => {
+          const { right, bottom } = label.getBoundingClientRect()
+          const [line, value] = [label.closest('li')!, label.nextElementSibling!].map((one) =>
+            one.getBoundingClientRect(),
+          )
+          const isWhole = label.scrollWidth <= label.clientWidth && bottom <= line.bottom + 1 && right <= value.left
+          return !isWhole || value.right > line.right + 1
+        })
+        .map((label) => label.textContent),
+    )
+    expect(cut).toEqual([])
+    await page.context().close()
+  })
+
   test('a variable that no motion follows is struck out and says why', async () => {
     const { page } = await visit(browser, whole)
     const row = page.getByTestId('variable-crank_pin_tilt')

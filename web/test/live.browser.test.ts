@@ -98,6 +98,66 @@ describe('a hardpoint of the strut in the hand', () => {
       )
   })
 
+  test('is drawn once for each design while it is dragged, without outlines, and only plots that change', async () => {
+    await page.evaluate(() => {
+      const { prototype: scene } = WebGL2RenderingContext
+      const { prototype: paper } = CanvasRenderingContext2D
+      const { clear, drawArrays, drawElements, drawElementsInstanced } = scene
+      const { clearRect } = paper
+      const count = { pictures: 0, calls: 0, plots: [] as string[] }
+      Object.assign(globalThis, { count })
+      scene.clear = function (...args) {
+        count.pictures++
+        clear.apply(this, args)
+      }
+      scene.drawArrays = function (...args) {
+        count.calls++
+        drawArrays.apply(this, args)
+      }
+      scene.drawElements = function (...args) {
+        count.calls++
+        drawElements.apply(this, args)
+      }
+      scene.drawElementsInstanced = function (...args) {
+        count.calls++
+        drawElementsInstanced.apply(this, args)
+      }
+      paper.clearRect = function (...args) {
+        const plot = this.canvas instanceof HTMLCanvasElement && this.canvas.closest('figure')
+        if (plot) count.plots.push(plot.querySelector('[data-testid=shown]')!.getAttribute('aria-pressed')!)
+        clearRect.apply(this, args)
+      }
+    })
+    type Count = { pictures: number; calls: number; plots: string[] }
+    const count = () => page.evaluate(() => (globalThis as unknown as { count: Count }).count)
+    const reset = () =>
+      page.evaluate(() =>
+        Object.assign((globalThis as unknown as { count: Count }).count, { pictures: 0, calls: 0, plots: [] }),
+      )
+    /** Pictures and draw calls of one change, after which nothing moves. */
+    const after = async (change: () => Promise<void>) => {
+      await reset()
+      await change()
+      await expect.poll(async () => (await count()).pictures).toBeGreaterThan(0)
+      await frames(page, 8)
+      return count()
+    }
+    const box = (await grip('tie_rod_outer').boundingBox())!
+    await page.mouse.move(box.x + 9, box.y + 9)
+    await page.mouse.down()
+    // The first move makes the picture light.
+    await after(() => page.mouse.move(box.x + 9, box.y + 6))
+    const dragged = await after(() => page.mouse.move(box.x + 9, box.y + 2))
+    expect(dragged.pictures).toBe(1)
+    // Sensitivities are those of the last design until the hand lets go.
+    expect(dragged.plots).toContain('false')
+    expect(dragged.plots).not.toContain('true')
+    await page.mouse.up()
+    await settled(page)
+    const whole = await after(() => page.keyboard.press('l'))
+    expect(dragged.calls).toBeLessThan(0.7 * (whole.calls / (whole.pictures / 2)))
+  })
+
   test('is typed with a unit, reset, undone and done again', async () => {
     await grip('tie_rod_outer').click()
     const z = await coordinate('z')

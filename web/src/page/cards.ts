@@ -131,14 +131,17 @@ function motionText(state: State, { quantity, time, unit }: Value, over: number 
   const reference = state.former?.quantities[index] ?? quantities[index].curves
   const before = state.isCompared ? courseRange(reference, times) : undefined
   const size = Math.max(...range.map(Math.abs))
-  const end = (value: number, former: number | undefined) => {
-    const by = former === undefined ? 0 : value - former
-    const changed = Math.abs(by) > noise(size) ? ` (${signed(by, 2)})` : ''
-    return `${number(rounded(value, size), 3)}${changed}`
-  }
-  const ends = range[1] - range[0] > noise(size) ? `${end(range[0], before?.[0])} … ${end(range[1], before?.[1])}` : ''
+  const ends = range.map((value, k) => endText(value, before?.[k], size)).join(' … ')
   const gradient = over === undefined ? '' : slopeText(state, index, over, time ?? 0, unit)
-  return [ends, gradient].filter(Boolean).join(' · ')
+  return [range[1] - range[0] > noise(size) && ends, gradient].filter(Boolean).join(' · ')
+}
+
+/** An end of a range of numbers of some size, with its change to the former one. */
+export function endText(value: number, former: number | undefined, size: number): string {
+  const by = former === undefined ? 0 : value - former
+  const changed = Math.abs(by) > noise(size) ? ` (${signed(by, 2)})` : ''
+  // Between the steps of a dwell the interpolation leaves a rest.
+  return `${number(Math.abs(value) <= noise(size) ? 0 : value, 3)}${changed}`
 }
 
 /** The wheel travel on the side of a quantity; undefined where there is none, and of the travel itself. */
