@@ -330,7 +330,7 @@ describe('without WebGL', () => {
 })
 
 describe('what went wrong', () => {
-  test.each([1024, 1440])('names in the legends are whole in a window %d wide', async (width) => {
+  test.each([1024, 1440])('names in legends and rows are whole in a window %d wide', async (width) => {
     const { page } = await visit(browser, models.delta, { viewport: { width, height: 768 } })
     await drawn(page)
     const labels = page.locator('.legend .label:visible')
@@ -348,6 +348,9 @@ describe('what went wrong', () => {
         .map((label) => label.textContent),
     )
     expect(cut).toEqual([])
+    const rows = page.locator('.variables .name:visible')
+    expect(await rows.count()).toBeGreaterThan(3)
+    expect(await rows.evaluateAll((all) => all.filter((name) => name.scrollWidth > name.clientWidth).length)).toBe(0)
     await page.context().close()
   })
 
