@@ -12,6 +12,7 @@ mod coupler;
 mod curve;
 mod driver;
 pub mod element;
+mod element_number;
 mod extent;
 mod formula;
 mod id;
@@ -43,10 +44,11 @@ pub use curve::{CURVE_PIECE, Curve, CurvePiece, CurvePoint};
 pub use driver::{Driver, Equilibrium};
 pub use element::{
     Angle, Axes, CoupledStiffness, Coupling, CubicStiffness, CubicTorsionalStiffness, Damping, Density,
-    ENDS_MEET, Element, ElementId, ElementKind, ElementNumber, ElementUnit, Force, Inertia, Length, Mass,
-    Moment, NumberId, Plain, Stiffness, TorsionalDamping, TorsionalStiffness, WheelPoint,
+    ENDS_MEET, Element, ElementId, ElementKind, ElementUnit, Force, Inertia, Length, Mass, Moment, Plain,
+    Stiffness, TorsionalDamping, TorsionalStiffness, WheelPoint,
 };
 pub(crate) use element::{each_number, elements, if_mass};
+pub use element_number::{ElementNumber, NumberId};
 pub(crate) use extent::Extent;
 pub use formula::{Formula, NamedNumber, Source, Target};
 pub use id::{

@@ -3,8 +3,8 @@
 use crate::joint::Quantity;
 use crate::law::Law;
 use crate::model::{
-    BodyId, Dimension, Direction, Formula, GROUND, JointId, Model, MomentTable, PointId, Solid, SpringTable,
-    Target, WheelId,
+    BodyId, Dimension, Direction, Formula, GROUND, JointId, Model, MomentTable, NumberId, PointId, Solid,
+    SpringTable, Target, WheelId,
 };
 use crate::number::Real;
 use crate::space::{Mat3, Vec3};
@@ -21,23 +21,6 @@ pub struct Element {
 /// An element's place in [`Model::elements`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ElementId(pub usize);
-
-/// A number of an element: its place in [`Model::numbers`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct NumberId(pub usize);
-
-/// A number that an element is given, which may follow the design.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ElementNumber {
-    /// The element's name.
-    pub owner: String,
-    /// Key in model files.
-    pub key: &'static str,
-    /// Value in the nominal design, SI.
-    pub value: f64,
-    /// Number of units of the text per SI unit.
-    pub(crate) per_unit: f64,
-}
 
 /// Along which axes something is given.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
