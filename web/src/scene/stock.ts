@@ -1,4 +1,4 @@
-/** Something on the graphics card, or that refers to it. */
+/** Object with memory on the graphics card. */
 interface Disposable {
   dispose(): void
 }
@@ -10,7 +10,7 @@ interface Disposable {
 export class Stock {
   readonly #all = new Map<string, { one: Disposable; users: number }>()
 
-  /** What belongs to a key, for one more user; `make` is called where nobody has it. The key implies the type. */
+  /** Object of a key, for one more user; `make` is called where nobody has it. The key implies the type. */
   take<T extends Disposable>(key: string, make: () => T): T {
     let found = this.#all.get(key)
     if (!found) {
@@ -21,7 +21,7 @@ export class Stock {
     return found.one as T
   }
 
-  /** A user of a key less. */
+  /** Removes a user of a key, and frees the object after its last user. */
   release(key: string): void {
     const found = this.#all.get(key)
     if (!found || --found.users > 0) return

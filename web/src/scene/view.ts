@@ -85,7 +85,7 @@ export class View {
     'The graphics context was lost. The view returns when the browser restores it.',
   )
   #palette = paletteOf()
-  /** What designs drawn one after another have in common. */
+  /** Geometries and materials that designs drawn one after another have in common. */
   readonly #stock = new Stock()
   #matter: Assembly
   #marks: Assembly
