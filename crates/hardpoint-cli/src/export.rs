@@ -76,6 +76,10 @@ fn export_to(session: &Session, options: &Export, model: &Path, to: &Path) -> Re
     let exported = format.export_with(&file, &stem, asked).map_err(|error| match error {
         ExportError::CannotBeDriven(fault) => session.cannot_be_driven(&file, &fault),
         ExportError::NotRecorded { why } => session.refused(&file, &not_recorded(format, &why)),
+        ExportError::UnfitName { why, help } => {
+            let message = format!("`-o {}`: {why}", to.display());
+            session.refused(&file, &RequestError { fault: Fault::Override, message, help })
+        }
     })?;
     let write = |to: &Path, text: &[u8]| {
         write_alone(to, |out| out.write_all(text)).map_err(|e| session.not_written(&e))

@@ -81,6 +81,13 @@ pub enum ExportError {
         /// Reason.
         why: String,
     },
+    /// The exported files cannot have this name.
+    UnfitName {
+        /// Reason.
+        why: String,
+        /// Suggested fix.
+        help: String,
+    },
 }
 
 /// Options of an export.
@@ -159,7 +166,8 @@ impl Format {
     ///
     /// # Errors
     ///
-    /// Formats that contain the motion need a mechanism that can be driven and whose step has formulas.
+    /// Formats that contain the motion need a mechanism that can be driven and whose step has formulas, and a name that
+    /// a C header can have.
     pub fn export(&self, file: &ModelFile, stem: &str) -> Result<ExportedModel, ExportError> {
         self.export_with(file, stem, ExportOptions::default())
     }

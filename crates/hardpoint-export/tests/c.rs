@@ -249,7 +249,7 @@ fn the_gallery_in_c_moves_as_in_the_engine() {
                 refused.push((name, why));
                 continue;
             }
-            Err(ExportError::CannotBeDriven(fault)) => panic!("{name}: {fault}"),
+            Err(error) => panic!("{name}: {error:?}"),
         };
         partial.extend(c.partial.iter().map(|measure| format!("{name}: {measure}")));
         let analysis = Analysis::new(&file.model).unwrap();
@@ -330,6 +330,36 @@ fn a_step_that_fails_leaves_the_state() {
     assert_eq!(rows[4], undisturbed[2]);
 }
 
+/// A file whose header would hide `math.h`, or which no `#include` can name, is refused with another name; a name that
+/// is no identifier has a prefix that is one, which is reported. Keywords of C are prefixes like other names.
+#[test]
+fn the_name_of_a_file_is_that_of_a_header() {
+    let file = model("four_bar");
+    let export = |name: &str, stem: &str| Format::named(name).unwrap().export(&file, stem);
+    for (format, stem, why, name) in [
+        ("c", "math", "would hide", "`math_motion`"),
+        ("c", "Stdio", "would hide", "`Stdio_motion`"),
+        ("fmu", "string", "would hide", "`string_motion`"),
+        ("c", "a\"b", "cannot be part of", "`a_b`"),
+        ("c", "corner@2", "cannot be part of", "`corner_2`"),
+    ] {
+        match export(format, stem) {
+            Err(ExportError::UnfitName { why: found, help }) => {
+                assert!(found.contains(why) && help.contains(name), "{stem}: {found}; {help}");
+            }
+            other => panic!("{stem}: {other:?}"),
+        }
+    }
+    let exported = export("c", "my corner-2").unwrap();
+    let prefix = exported.unsupported.iter().find(|u| u.kind == "name" && u.name == "my corner-2").unwrap();
+    assert!(prefix.why.contains("`my_corner_2`"), "{}", prefix.why);
+    assert!(
+        exported.text.contains("#include \"my corner-2.h\"") && exported.text.contains("my_corner_2_step(")
+    );
+    let keyword = Compiled::new(&file, "int", "-O0").unwrap();
+    assert!(!keyword.unsupported.contains(&"int".to_owned()));
+}
+
 /// Measures of loads and those found by iterations are reported, not written.
 #[test]
 fn what_is_not_written_is_reported() {
@@ -393,7 +423,7 @@ fn a_changed_design_in_c_is_that_of_the_engine() {
                 fixed.push((name, why));
                 continue;
             }
-            Err(ExportError::CannotBeDriven(fault)) => panic!("{name}: {fault}"),
+            Err(error) => panic!("{name}: {error:?}"),
         };
         let analysis = Analysis::new(model).unwrap();
         let arguments: Vec<usize> =
@@ -491,32 +521,59 @@ curve = { closed = true, points = [
 ] }
 "#;
 
+/// Exports a model whose design variables are all arguments, and compares its motion and the derivatives of all
+/// measures with those of the engine at this design.
+fn compare_design(name: &str, text: &str, change: &[f64]) {
+    let file = hardpoint_file::parse(text, name).unwrap_or_else(|e| panic!("{e}"));
+    let options = ExportOptions { design: true };
+    let c = Compiled::of(&file, name, "-O0", options, include_str!("design.c")).unwrap();
+    assert_eq!(c.design.len(), change.len(), "{name}: {:?}", c.design);
+    let analysis = Analysis::new(&file.model).unwrap();
+    let solution = analysis.solve(Run::new().at(change));
+    let steps = drivers(&analysis, &solution);
+    assert_eq!(steps.len(), file.model.times.len(), "{name}: {:?}", solution.stop);
+    let answer = c.answer(change.iter().chain(steps.iter().flatten().flatten()).copied());
+    let mut lines = answer.lines();
+    assert_eq!(lines.next(), Some("0"), "{name}: the design is not reached");
+    let rows: Vec<Vec<f64>> = lines.map(|l| l.split(' ').map(|x| x.parse().unwrap()).collect()).collect();
+    assert!(rows.len() == steps.len() && rows.iter().all(|row| row[0] == 0.0), "{name}");
+    for (m, measure) in c.measures.iter().enumerate() {
+        let column = solution.measured.index(measure).unwrap();
+        for order in 0..3 {
+            let of = |first: usize| rows.iter().map(|row| row[1 + first + order]).collect::<Vec<f64>>();
+            let value = |k: usize| solution.measured.value(k, column)[order];
+            let values: Vec<f64> = (0..rows.len()).map(value).collect();
+            let apart = difference(&of(3 * m), &values);
+            assert!(apart < CHANGED, "{name}: {measure}, order {order} by {apart:e}");
+            for (b, variable) in c.design.iter().enumerate() {
+                let d = |k: usize| solution.measured.d(k, VariableId(b), column)[order];
+                let by: Vec<f64> = (0..rows.len()).map(d).collect();
+                let apart = difference(&of(3 * (c.measures.len() + m * change.len() + b)), &by);
+                assert!(apart < DERIVATIVE, "{name}: {measure} by {variable}, order {order} by {apart:e}");
+            }
+        }
+    }
+}
+
 #[test]
 fn a_cam_with_a_given_distance_has_its_hardpoints_as_arguments() {
-    let file = hardpoint_file::parse(ROLLER, "roller.toml").unwrap_or_else(|e| panic!("{e}"));
-    let options = ExportOptions { design: true };
-    let c = Compiled::of(&file, "roller", "-O0", options, include_str!("design.c")).unwrap();
-    let analysis = Analysis::new(&file.model).unwrap();
-    let change = [2e-3];
-    let solution = analysis.solve(Run::new().at(&change));
-    let steps = drivers(&analysis, &solution);
-    assert_eq!(steps.len(), 401);
-    let answer = c.answer(change.into_iter().chain(steps.iter().flatten().flatten().copied()));
-    let mut lines = answer.lines();
-    assert_eq!(lines.next(), Some("0"), "the design is not reached");
-    let rows: Vec<Vec<f64>> = lines.map(|l| l.split(' ').map(|x| x.parse().unwrap()).collect()).collect();
-    assert!(rows.len() == steps.len() && rows.iter().all(|row| row[0] == 0.0));
-    let column = solution.measured.index("lift").unwrap();
-    for order in 0..3 {
-        let of = |first: usize| rows.iter().map(|row| row[first + order]).collect::<Vec<f64>>();
-        let values: Vec<f64> = (0..rows.len()).map(|k| solution.measured.value(k, column)[order]).collect();
-        let by: Vec<f64> =
-            (0..rows.len()).map(|k| solution.measured.d(k, VariableId(0), column)[order]).collect();
-        let apart = difference(&of(1), &values);
-        assert!(apart < CHANGED, "order {order} by {apart:e}");
-        let apart = difference(&of(4), &by);
-        assert!(apart < DERIVATIVE, "derivative, order {order} by {apart:e}");
-    }
+    compare_design("roller", ROLLER, &[2e-3]);
+}
+
+/// The distance of a roller from its curve is that in the design configuration, from the foot of the perpendicular,
+/// which moves over several pieces of the curve; a follower in a slot has none until the design moves it off the curve.
+#[test]
+fn a_cam_whose_distance_is_that_of_the_design_has_its_hardpoints_as_arguments() {
+    let moves = "design.roller_x = { move = \"roller\", along = \"x\" }\n\
+                 design.roller_y = { move = \"roller\", along = \"y\" }\n\
+                 design.turn = { tilt = \"follower\", about = \"z\" }\n\
+                 design.shaft_x";
+    let text = ROLLER.replace("length = 12\n", "").replace("design.shaft_x", moves);
+    assert_eq!(text.matches("length").count(), 1);
+    compare_design("measured_roller", &text, &[15e-3, -4e-3, 0.1, 2e-3]);
+    let text = std::fs::read_to_string("../../models/cam.toml").unwrap();
+    let text = text.replace(", fixed_length = true", "").replace("motor_speed = {", "# motor_speed = {");
+    compare_design("cam", &text, &[1e-4, 2e-4, 0.01, 1e-3]);
 }
 
 /// The examples of `docs/export-c.md`, as one file.

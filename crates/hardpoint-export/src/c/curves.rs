@@ -16,14 +16,18 @@ pub fn pieces(step: &DrivenStep) -> String {
     }
     let (mut tables, mut calls) = (String::new(), String::new());
     for (k, DrivenCurve { coordinate, curve }) in step.curves.iter().enumerate() {
-        let _ = writeln!(tables, "static const double @name@_curve_{k}[][{CURVE_PIECE}] = {{");
-        for piece in curve.pieces() {
-            let _ = writeln!(tables, "    {{{}}},", piece.map(literal).join(", "));
+        // A curve and its foot in the design configuration have one table.
+        let table = step.curves.iter().position(|other| other.curve == *curve).unwrap_or(k);
+        if table == k {
+            let _ = writeln!(tables, "static const double @name@_curve_{k}[][{CURVE_PIECE}] = {{");
+            for piece in curve.pieces() {
+                let _ = writeln!(tables, "    {{{}}},", piece.map(literal).join(", "));
+            }
+            let _ = writeln!(tables, "}};\n");
         }
-        let _ = writeln!(tables, "}};\n");
         let _ = writeln!(
             calls,
-            "    @name@_piece(@name@_curve_{k}, {}, {}, {}, x[{coordinate}], x + {});",
+            "    @name@_piece(@name@_curve_{table}, {}, {}, {}, x[{coordinate}], x + {});",
             curve.pieces().count(),
             literal(curve.length()),
             u8::from(curve.is_closed()),

@@ -77,6 +77,40 @@ const LEAST_MISFIT: f64 = 1e-9;
 const FOLLOWS_CALL: &str = "    if (!@name@_follows(s, &p, along, dx, o->residual, d))
         return @NAME@_LOCKED;
 ";
+/// Headers of the C standard library.
+const STANDARD_HEADERS: [&str; 31] = [
+    "assert",
+    "complex",
+    "ctype",
+    "errno",
+    "fenv",
+    "float",
+    "inttypes",
+    "iso646",
+    "limits",
+    "locale",
+    "math",
+    "setjmp",
+    "signal",
+    "stdalign",
+    "stdarg",
+    "stdatomic",
+    "stdbit",
+    "stdbool",
+    "stdckdint",
+    "stddef",
+    "stdint",
+    "stdio",
+    "stdlib",
+    "stdnoreturn",
+    "string",
+    "tgmath",
+    "threads",
+    "time",
+    "uchar",
+    "wchar",
+    "wctype",
+];
 /// Numbers of a body, in the order of the programs: r, the columns of A, v, omega, a, alpha.
 const BODY: usize = 24;
 
@@ -116,6 +150,9 @@ fn write(
     }
     let parts = Parts { derivatives: options.design, design: options.design };
     let motion = generate(file, stem, parts, out)?;
+    if motion.name != stem {
+        out.report_unsupported("name", stem, format!("the prefix of all names is `{}`", motion.name));
+    }
     if !options.design && !file.model.variables.is_empty() {
         let why = "their nominal values are constants of the formulas; `--design` makes them arguments";
         out.report_unsupported("design variables", &file.model.variables.len().to_string(), why);
@@ -129,13 +166,14 @@ fn write(
 ///
 /// # Errors
 ///
-/// The mechanism cannot be driven, or its step has no formulas.
+/// The mechanism cannot be driven, its step has no formulas, or no header can have this name.
 pub fn generate(
     file: &ModelFile,
     stem: &str,
     parts: Parts,
     out: &mut ExportedModel,
 ) -> Result<MotionSource, ExportError> {
+    check_header(stem)?;
     let model = &file.model;
     let analysis = Analysis::new(model).map_err(ExportError::CannotBeDriven)?;
     let refused = |why: String| ExportError::NotRecorded { why };
@@ -176,6 +214,23 @@ pub fn generate(
     let (header, origin) = (source.header(sizes), source.origin());
     let Source { name, measures: Measures { list: measures, .. }, design, .. } = source;
     Ok(MotionSource { source: text, header, name, measures, design, start, origin })
+}
+
+/// Checks that an `#include` finds the header of a source file with this name, and hides no other.
+fn check_header(stem: &str) -> Result<(), ExportError> {
+    let unfit = |why: String, name: String| {
+        let help = format!("choose another name of the file, for example `{name}`");
+        Err(ExportError::UnfitName { why, help })
+    };
+    if STANDARD_HEADERS.contains(&&*stem.to_ascii_lowercase()) {
+        let why = format!("its header `{stem}.h` would hide that of the C standard library");
+        return unfit(why, format!("{stem}_motion"));
+    }
+    // Places of the templates begin with the last one.
+    if let Some(c) = stem.chars().find(|c| c.is_control() || ['"', '\\', '@'].contains(c)) {
+        return unfit(format!("{c:?} cannot be part of the name of its header"), identifier(stem));
+    }
+    Ok(())
 }
 
 /// Reports the measures that are NaN at some output times.

@@ -19,8 +19,9 @@ use crate::design::{BodyFixed, DesignVelocity, Geometry, JointConstants, MarkerV
 use crate::law::Law;
 use crate::model::element::ActsOn;
 use crate::model::{
-    BodyId, Change, DesignVariable, Direction, Driver, DriverId, ElementId, HardpointId, Joint, JointId,
-    Length, Measure, Model, NumberId, PointId, Shape, ShapeKind, SharedModel, Source, Target, VariableId,
+    BodyId, Change, Contact, DesignVariable, Direction, Driver, DriverId, ElementId, HardpointId, Joint,
+    JointId, Length, Measure, Model, NumberId, PointId, Shape, ShapeKind, SharedModel, Source, Target,
+    VariableId,
 };
 use crate::number::{self, Dual, Real};
 use crate::space::{Mat3, Pose, Twist, Vec3};
@@ -87,8 +88,27 @@ impl<'m> DesignMap<'m> {
 
     /// Returns the geometry of designs, given by the values of all variables.
     pub fn geometry<T: Real>(&self, values: &[T]) -> Geometry<T> {
+        self.placed_geometry(&PlacedDesign::new(self, values.to_vec()))
+    }
+
+    /// Returns the geometry of designs for known feet of followers on the curves of joints, and the followers, each in
+    /// the frame of its curve.
+    pub(crate) fn geometry_on<T: Real>(&self, values: &[T], feet: Feet<T>) -> (Geometry<T>, Vec<Vec3<T>>) {
+        let design = PlacedDesign::on_feet(self, values.to_vec(), feet);
+        let followers = design.feet.iter().map(|(joint, _)| design.follower(joint.0)).collect();
+        (self.placed_geometry(&design), followers)
+    }
+
+    /// Returns the point that follows the curve of a joint, in the frame of the curve, for these values of the
+    /// variables; `None` unless their distance results from its position.
+    pub(crate) fn follower<T: Real>(&self, joint: JointId, values: &[T]) -> Option<Vec3<T>> {
+        let Joint { curve, length, .. } = &self.model().joints[joint.0];
+        let is_measured = curve.is_some() && length.is_none();
+        is_measured.then(|| PlacedDesign::new(self, values.to_vec()).follower(joint.0))
+    }
+
+    fn placed_geometry<T: Real>(&self, design: &PlacedDesign<'_, T>) -> Geometry<T> {
         let model = self.model();
-        let design = PlacedDesign::new(self, values.to_vec());
         Geometry {
             markers: (0..model.joints.len()).map(|j| number::both([0, 1], |e| design.marker(j, e))).collect(),
             kept: (0..model.joints.len()).map(|j| design.kept(j)).collect(),
@@ -294,7 +314,11 @@ struct PlacedDesign<'e, T> {
     for_lengths: Values<T>,
     /// Per variable: true if it has an effect.
     counts: Vec<bool>,
+    feet: Feet<T>,
 }
+
+/// Known feet of followers on the curves of joints.
+type Feet<T> = Vec<(JointId, Contact<T>)>;
 
 /// Values of the variables, and the results of formulas; no results if no formula depends on an active variable.
 #[derive(Clone)]
@@ -306,6 +330,11 @@ struct Values<T> {
 impl<'e, T: Real> PlacedDesign<'e, T> {
     /// Omits variables at 0, unless they are differentiated.
     fn new(design_map: &'e DesignMap<'_>, values: Vec<T>) -> Self {
+        Self::on_feet(design_map, values, Vec::new())
+    }
+
+    /// The same for known feet; those of other followers are found by iterations.
+    fn on_feet(design_map: &'e DesignMap<'_>, values: Vec<T>, feet: Feet<T>) -> Self {
         let variables = &design_map.model().variables;
         let counts = values.iter().map(|v| !v.vanishes()).collect();
         // With b = 0 for the variables of fixed length, L = abs(d) does not depend on them: L' = 0, and the mechanism
@@ -314,7 +343,7 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
         let for_lengths = values.iter().zip(variables).map(follows).collect();
         let plain = |variables| Values { variables, formulas: Vec::new() };
         let (values, for_lengths) = (plain(values), plain(for_lengths));
-        let mut design = Self { design_map, values, for_lengths, counts };
+        let mut design = Self { design_map, values, for_lengths, counts, feet };
         if let Some(f) = &design_map.formulas
             && f.is_used.iter().zip(&design.counts).any(|(is_used, counts)| *is_used && *counts)
         {
@@ -488,6 +517,12 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
         rot
     }
 
+    /// Returns the point that follows the curve of joint j, in the frame of the curve.
+    fn follower(&self, j: usize) -> Vec3<T> {
+        let [m_i, m_j] = number::both([0, 1], |e| self.global_marker(j, e, &self.for_lengths));
+        m_i.rot.transpose_mul(m_j.r - m_i.r)
+    }
+
     /// Returns the constants of joint j.
     fn kept(&self, j: usize) -> JointConstants<T> {
         let (joint, zero) = (&self.design_map.model().joints[j], T::zero());
@@ -511,7 +546,10 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
                 let [m_i, m_j] = [0, 1].map(|e| self.design_map.model().marker(JointId(j), e));
                 curve.distance(m_i.rot.transpose_mul(m_j.r - m_i.r)).signum()
             };
-            let drawn = || curve.distance(m_i.rot.transpose_mul(d));
+            let drawn = || {
+                let (p, foot) = (m_i.rot.transpose_mul(d), self.feet.iter().find(|(joint, _)| joint.0 == j));
+                foot.map_or_else(|| curve.distance(p), |(_, foot)| foot.distance(p))
+            };
             given.map_or_else(drawn, |length| length.abs() * T::constant(side()))
         });
         // Parallel axes have no angle about z_i; it would have no derivative.

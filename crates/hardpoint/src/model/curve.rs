@@ -74,6 +74,20 @@ impl<T: Real> Contact<T> {
         Self::on_piece(piece, self.u + self.step(p))
     }
 
+    /// Distance of p from the curve, positive on its left, for the foot of the perpendicular or a place near it.
+    ///
+    /// With its first and second derivatives where p has some: n away from the nearest point, the distance is
+    /// `n - k t^2 / (2 (1 - k n))`, t along the curve and k its curvature.
+    pub fn distance(&self, p: Vec3<T>) -> T {
+        let (frame, e) = (self.frame(), p - self.c[0]);
+        let (t, n) = (frame.rot.cols[0].dot(e), frame.rot.cols[1].dot(e));
+        let [_, d, dd, _] = self.c;
+        // k = C' x C'' / abs(C')^3, of the parallel curve through p: k / (1 - k n)
+        let k = (d.x * dd.y - d.y * dd.x) / (d.dot(d) * d.norm());
+        let flat = k / (T::one() - k * n);
+        n - T::constant(0.5) * flat * t * t
+    }
+
     /// Step of Newton's method to the foot of the perpendicular from p: (p - C) . C' / (C'^2 - (p - C) . C'').
     fn step(&self, p: Vec3<T>) -> T {
         let [c, d, dd, _] = self.c;
@@ -311,20 +325,9 @@ impl Curve {
         feet.min_by(|a, b| off(*a).total_cmp(&off(*b))).unwrap_or_else(|| self.search(p))
     }
 
-    /// Distance of p from the curve, positive on its left.
-    ///
-    /// With its first and second derivatives where p has some: next to the nearest point, n away from it, the distance
-    /// is `n - k t^2 / (2 (1 - k n))`, t along the curve and k its curvature.
+    /// Distance of p from the curve, positive on its left, with its first and second derivatives where p has some.
     pub(crate) fn distance<T: Real>(&self, p: Vec3<T>) -> T {
-        let start = T::constant(self.start);
-        let contact = Contact::nearest(self, p, start);
-        let (frame, e) = (contact.frame(), p - contact.c[0]);
-        let (t, n) = (frame.rot.cols[0].dot(e), frame.rot.cols[1].dot(e));
-        let [_, d, dd, _] = contact.c;
-        // k = C' x C'' / abs(C')^3, of the parallel curve through p: k / (1 - k n)
-        let k = (d.x * dd.y - d.y * dd.x) / (d.dot(d) * d.norm());
-        let flat = k / (T::one() - k * n);
-        n - T::constant(0.5) * flat * t * t
+        Contact::nearest(self, p, T::constant(self.start)).distance(p)
     }
 }
 

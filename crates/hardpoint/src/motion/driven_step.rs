@@ -9,13 +9,17 @@
 //! like the coordinates. The turn of an angle is the nearest one to the predicted angle. A parameter is corrected on
 //! the piece of its curve on which it is predicted: the numbers of the piece are inputs, too.
 //!
+//! Where the design changes the distance of a point from its curve, the distance is that from the foot of the
+//! perpendicular in the design configuration. The parameter of the foot is one more unknown, which moves with the
+//! design only.
+//!
 //! [`step_program`]: super::step_program
 
 use hardpoint_tape::{Number, Options, Program, record};
 
 use crate::design::DesignMap;
 use crate::linalg::Factors;
-use crate::model::{CURVE_PIECE, Contact, Curve, Driver, VariableId};
+use crate::model::{CURVE_PIECE, Contact, Curve, Driver, JointId, VariableId};
 use crate::number::{self, record as recording};
 use crate::space::Vec3;
 use crate::topology::{ClosureId, RowId, Topology};
@@ -37,9 +41,10 @@ use super::step_program::{OFFSET, RecordedStep, largest_of};
 #[derive(Clone, Debug)]
 pub struct DrivenStep {
     /// Unknown coordinates; those of a ball are the four components of a unit quaternion. Then the angles that couplers
-    /// count through whole turns, and the parameters of the contacts with curves.
+    /// count through whole turns, the parameters of the contacts with curves, and those of the feet in the design
+    /// configuration.
     pub coordinates: Vec<DrivenCoordinate>,
-    /// Curves that points follow.
+    /// Curves that points follow: those of the contacts, then those of the feet.
     pub curves: Vec<DrivenCurve>,
     /// Value of every driver at the start, m or rad.
     pub drivers: Vec<DrivenCoordinate>,
@@ -113,19 +118,48 @@ enum Unknown {
     Angle(RowId),
     /// Parameter of the contact with a curve.
     Contact(ClosureId, usize),
+    /// Parameter of a foot, by its index.
+    Foot(usize, Foot),
+}
+
+/// Foot of the perpendicular on a curve from its follower in the design configuration, if the design moves it.
+#[derive(Clone, Copy)]
+struct Foot {
+    joint: JointId,
+    /// Index of the curve.
+    curve: usize,
+}
+
+impl Foot {
+    /// All of a plan whose design is an input.
+    fn all(topology: &Topology, design_map: &DesignMap<'_>) -> Vec<Self> {
+        let mut feet = Vec::new();
+        record(|| {
+            let values: Vec<Number> = design_map.model().whole(&[]).into_iter().map(Number::input).collect();
+            let is_moved = |foot: &Self| {
+                let follower = design_map.follower(foot.joint, &values);
+                follower.is_some_and(|p| [p.x, p.y].iter().any(|x| x.known().is_none()))
+            };
+            let all = topology.contacts().map(|(c, curve)| Self { joint: topology[c].joint, curve });
+            feet = all.filter(is_moved).collect();
+            []
+        });
+        feet
+    }
 }
 
 impl Unknown {
     /// All of a plan, in the order of the inputs.
-    fn all(topology: &Topology) -> Vec<Self> {
+    fn all(topology: &Topology, feet: &[Foot]) -> Vec<Self> {
         let channels = Channel::all(topology).into_iter().map(Self::Channel);
         let terms = topology.coupler_terms.iter().filter(|r| !topology.constraint(**r).is_length());
         let contacts = topology.contacts().map(|(c, k)| Self::Contact(c, k));
-        channels.chain(terms.map(|r| Self::Angle(*r))).chain(contacts).collect()
+        let feet = feet.iter().enumerate().map(|(k, foot)| Self::Foot(k, *foot));
+        channels.chain(terms.map(|r| Self::Angle(*r))).chain(contacts).chain(feet).collect()
     }
 
-    /// Value, first and second derivative in a solved state.
-    fn of(self, topology: &Topology, state: &State<Number>) -> [Number; ORDERS] {
+    /// Value, first and second derivative in a solved state, with the parameters of the feet.
+    fn of(self, topology: &Topology, state: &State<Number>, feet: &[Number]) -> [Number; ORDERS] {
         match self {
             Self::Channel(channel) => channel.of(state),
             Self::Angle(r) => state.coordinate_of_row(topology, r),
@@ -133,6 +167,8 @@ impl Unknown {
                 let [rate, second] = state.sliding(topology, c, k);
                 [state.contacts[k].u, rate, second]
             }
+            // It rests where the design does.
+            Self::Foot(k, _) => [feet[k], Number::constant(0.0), Number::constant(0.0)],
         }
     }
 
@@ -149,6 +185,9 @@ impl Unknown {
             }
             Self::Angle(r) => (saved.coupled[r.0][0], 1.0),
             Self::Contact(_, k) => (saved.contacts[k].u, one.parts.curves[k].turning_length()),
+            Self::Foot(_, Foot { curve, .. }) => {
+                (one.parts.curves[curve].start(), one.parts.curves[curve].turning_length())
+            }
         };
         DrivenCoordinate { start, unit }
     }
@@ -158,12 +197,13 @@ impl Unknown {
         self,
         topology: &Topology,
         state: &State<Number>,
+        feet: &[Number],
         [from, unit]: [Number; 2],
     ) -> Option<Number> {
         match self {
             Self::Channel(_) => None,
-            Self::Angle(_) | Self::Contact(..) => {
-                let [now, ..] = self.of(topology, state);
+            Self::Angle(_) | Self::Contact(..) | Self::Foot(..) => {
+                let [now, ..] = self.of(topology, state, feet);
                 Some(((now - from) / unit).abs())
             }
         }
@@ -194,20 +234,21 @@ impl DrivenStep {
         besides: impl FnOnce(&mut RecordedStep<'_>) -> Option<(Vec<Number>, Vec<Number>)>,
     ) -> Option<Self> {
         let (model, topology) = (one.model, &one.topology);
-        let unknowns = Unknown::all(topology);
-        let design = (design_map, any_design);
+        let feet = if any_design { Foot::all(topology, design_map) } else { Vec::new() };
+        let unknowns = Unknown::all(topology, &feet);
+        let design = (design_map, any_design.then_some(&feet[..]));
         // An offset below 1e-8 is corrected once; without an offset nothing is corrected.
-        let correction = recorded(one, design, OFFSET[0], |step, _, inputs| {
+        let correction = recorded(one, design, OFFSET[0], |step, _, (inputs, feet)| {
             let state = &*step.state;
-            let mut out: Vec<Number> = unknowns.iter().map(|u| u.of(topology, state)[0]).collect();
+            let mut out: Vec<Number> = unknowns.iter().map(|u| u.of(topology, state, feet)[0]).collect();
             let of_coordinates = state.corrections.iter().map(|(corrections, _)| corrections[0]);
             let others = unknowns.iter().zip(inputs);
-            let others = others.filter_map(|(unknown, from)| unknown.corrected(topology, state, *from));
+            let others = others.filter_map(|(unknown, from)| unknown.corrected(topology, state, feet, *from));
             out.push(largest_of(of_coordinates.chain(others)));
             Some(out)
         })?;
-        let path = recorded(one, design, 0.0, |step, _, _| {
-            let rates = unknowns.iter().flat_map(|u| u.of(topology, step.state).into_iter().skip(1));
+        let path = recorded(one, design, 0.0, |step, _, (_, feet)| {
+            let rates = unknowns.iter().flat_map(|u| u.of(topology, step.state, feet).into_iter().skip(1));
             Some(rates.collect())
         })?;
         let motion = recorded(one, design, 0.0, |step, parts, _| {
@@ -228,8 +269,8 @@ impl DrivenStep {
             Some([vec![limit, branch, growth, pivots, residual], determinants, measures, bodies].concat())
         })?;
         let coordinates = unknowns.iter().map(|unknown| unknown.start(one));
-        let first_contact = unknowns.len() - one.parts.curves.len();
-        let curves = one.parts.curves.iter().enumerate();
+        let curves = one.parts.curves.iter().chain(feet.iter().map(|foot| &one.parts.curves[foot.curve]));
+        let first_contact = unknowns.len() - one.parts.curves.len() - feet.len();
         // Zero has one sign.
         let values = model.drivers.iter().zip(&one.saved.drivers).map(|(d, f)| d.with_sense(f[0]) + 0.0);
         let drivers = values.zip(driver_units(model, topology));
@@ -241,6 +282,7 @@ impl DrivenStep {
             design: (0..values.len()).map(variable).collect(),
             coordinates: coordinates.collect(),
             curves: curves
+                .enumerate()
                 .map(|(k, curve)| DrivenCurve { coordinate: first_contact + k, curve: curve.clone() })
                 .collect(),
             drivers: drivers.map(|(start, unit)| DrivenCoordinate { start, unit }).collect(),
@@ -253,28 +295,31 @@ impl DrivenStep {
     }
 }
 
-/// Records a step of the nominal design, or of any, from a position at `offset` from the accepted one, and returns the
-/// program of these outputs; `outputs` also takes every unknown where the step begins, with its unit.
+/// Every unknown where a step begins, with its unit, and the corrected parameter of every foot.
+type Begin<'a> = (&'a [[Number; 2]], &'a [Number]);
+
+/// Records a step of the nominal design, or of any with these feet, from a position at `offset` from the accepted one,
+/// and returns the program of these outputs.
 fn recorded(
     one: &Mechanism<'_>,
-    (design_map, any_design): (&DesignMap<'_>, bool),
+    (design_map, any_design): (&DesignMap<'_>, Option<&[Foot]>),
     offset: f64,
-    outputs: impl FnOnce(&mut RecordedStep<'_>, &PlanGeometry<Number>, &[[Number; 2]]) -> Option<Vec<Number>>,
+    outputs: impl FnOnce(&mut RecordedStep<'_>, &PlanGeometry<Number>, Begin<'_>) -> Option<Vec<Number>>,
 ) -> Option<Program> {
     let (model, topology) = (one.model, &one.topology);
     let mut fits = false;
     recording::begin();
     let recorded = record(|| {
         let mut state = State::new(model, topology);
-        let (mut inputs, mut contacts) = (Vec::new(), Vec::new());
-        for unknown in Unknown::all(topology) {
+        let (mut inputs, mut contacts, mut feet) = (Vec::new(), Vec::new(), Vec::new());
+        for unknown in Unknown::all(topology, any_design.unwrap_or_default()) {
             let DrivenCoordinate { start, unit } = unknown.start(one);
             let beside = match unknown {
                 Unknown::Channel(Channel::Ball(c, k)) => {
                     one.saved.balls[c.0].nudged(Vec3::new(offset, offset, offset)).component(k)
                 }
                 Unknown::Channel(Channel::Coordinate(_)) => start + offset * unit,
-                Unknown::Angle(_) | Unknown::Contact(..) => start,
+                Unknown::Angle(_) | Unknown::Contact(..) | Unknown::Foot(..) => start,
             };
             let input = Number::input(beside);
             inputs.push([input, Number::constant(unit)]);
@@ -282,6 +327,7 @@ fn recorded(
                 Unknown::Channel(channel) => channel.put(input, &mut state),
                 Unknown::Angle(r) => state.near[r.0] = input,
                 Unknown::Contact(..) => contacts.push((start, input)),
+                Unknown::Foot(_, foot) => feet.push((foot, start, input)),
             }
         }
         state.pieces = one
@@ -293,22 +339,30 @@ fn recorded(
             .collect();
         state.contacts =
             state.pieces.iter().zip(&contacts).map(|(piece, (_, u))| Contact::on_piece(piece, *u)).collect();
+        let feet = feet.into_iter().map(|(Foot { joint, curve }, start, u)| {
+            let piece = one.parts.curves[curve].piece(start).map(Number::input);
+            (joint, piece, Contact::on_piece(&piece, u))
+        });
+        let feet: Vec<_> = feet.collect();
         // Inputs are the drivers' values, the kernel drives coordinates.
         let coordinate = |(driver, saved): (&Driver, &[f64; ORDERS])| {
             number::each(saved, |x| driver.with_sense(Number::input(driver.with_sense(x))))
         };
         let drivers: Vec<[Number; ORDERS]> =
             model.drivers.iter().zip(&one.saved.drivers).map(coordinate).collect();
-        let number = if any_design { Number::input } else { Number::constant };
+        let number = if any_design.is_some() { Number::input } else { Number::constant };
         let values: Vec<Number> = model.whole(&[]).into_iter().map(number).collect();
-        let geometry = recording::strictly(|| design_map.geometry(&values));
+        let known = feet.iter().map(|(joint, _, foot)| (*joint, *foot)).collect();
+        let (geometry, followers) = recording::strictly(|| design_map.geometry_on(&values, known));
+        let corrected = feet.iter().zip(followers).map(|((_, piece, foot), p)| foot.corrected(piece, p).u);
+        let corrected: Vec<Number> = corrected.collect();
         let parts = PlanGeometry::of(model, topology, &geometry);
         if state.solve(topology, &parts, &drivers, f64::INFINITY).is_err() {
             return Vec::new();
         }
         let mut step =
             RecordedStep { topology, state: &mut state, values: &values, drivers: &drivers, laws: &[] };
-        let outputs = outputs(&mut step, &parts, &inputs);
+        let outputs = outputs(&mut step, &parts, (&inputs, &corrected));
         fits = outputs.is_some();
         outputs.unwrap_or_default()
     });

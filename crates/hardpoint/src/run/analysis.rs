@@ -553,12 +553,7 @@ impl<'m> Analysis<'m> {
         };
         // A measure that is not arithmetic leaves the motion as it is.
         let step = record(slopes).or_else(|| record(Vec::new()));
-        let follows = any_design && self.topology.contacts().next().is_some();
-        let why = match follows {
-            true => "a design variable changes the distance of a point from its curve",
-            false => "a decision of the step depends on its position",
-        };
-        step.ok_or_else(|| why.to_owned())
+        step.ok_or_else(|| "a decision of the step depends on its position".to_owned())
     }
 
     /// Returns the measures as a straight-line program of the motion of the bodies; `None` if they cannot be recorded.
