@@ -158,6 +158,8 @@ def checked(of: Class) -> Class:
 def named(function: Called) -> Called:
     """Function that reports misspelt arguments as errors of this package."""
     signature = inspect.signature(function)
+    # Of a class, what is called.
+    name = function.__qualname__.removesuffix(".__init__").rpartition(".")[2]
 
     @functools.wraps(function)
     def call(*values: Any, **given: Any) -> Any:
@@ -167,11 +169,11 @@ def named(function: Called) -> Called:
             try:
                 signature.bind(*values, **given)
             except TypeError as why:
-                raise ArgumentError.saying(_sentence(function.__name__, signature, given, why)) from None
+                raise ArgumentError.saying(_sentence(name, signature, given, why)) from None
             # The engine names an argument of another type in its message, or in a note since Python 3.11.
             notes = [note for note in getattr(error, "__notes__", ()) if note.startswith("while processing")]
             if notes or str(error).startswith("argument '"):
-                raise ArgumentError.saying(f"`{function.__name__}`: {' '.join([str(error), *notes])}") from error
+                raise ArgumentError.saying(f"`{name}`: {' '.join([str(error), *notes])}") from error
             raise
 
     return call  # type: ignore[return-value]

@@ -668,7 +668,7 @@ class Model:
     ) -> DriverTable:
         """Outputs as functions of one to three drivers, with a proved error of the interpolation (docs/maps.md): `over` has both ends
         of each driver, `error` the permitted one (`"0.001deg"`), of all outputs or by name. With `path` the table is a file as well:
-        `.csv`, `.json`, or `.txt` for Modelica, which is linear and in SI."""
+        `.csv`, `.json`, `.txt` for Modelica, which is linear and in SI, or `.adm` for splines of Adams."""
         return tools.table(self, over, of, error, interpolation, path)
 
     def compare(self, other: Model, *, case: str | None = None, measures: Iterable[str] = ()) -> Study:
@@ -881,7 +881,7 @@ def _cases_of_their_own(made: Mapping[str, Any], target: Mapping[str, Any]) -> d
 def _increasing(times: Any) -> np.ndarray:
     """Output times."""
     at = np.atleast_1d(numbers("output times", times))
-    if at.ndim != 1 or not np.isfinite(at).all() or not (np.diff(at) > 0).all():
+    if at.ndim != 1 or not at.size or not np.isfinite(at).all() or not (np.diff(at) > 0).all():
         raise UsageError.saying("output times are a list of increasing numbers, s, or a table such as `{'end': 2, 'steps': 100}`")
     return at
 

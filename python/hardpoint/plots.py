@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Mapping, Sequence
+from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .arguments import listed, named
-from .errors import UsageError
+from . import files
+from .arguments import ArgumentError, listed, named
+from .errors import FileError, UsageError
 
 if TYPE_CHECKING:
     from .run import Run
@@ -56,6 +59,13 @@ def plot(
     if not quantities:
         what = "the model has no measures" if names is None else "`names` is empty"
         raise UsageError.saying(f"{what}; name measures or coordinates of points")
+    # Before there is a figure: an error leaves none behind.
+    abscissas = {label: run.times if over is None else run.values(over) for label, run in labelled.items()}
+    ordinates = [
+        {label: run.values(name, order) if by is None else run.sensitivity(name, by, order) for label, run in labelled.items()}
+        for name in quantities
+    ]
+    _check_style(style)
     if ax is None:
         pyplot = _matplotlib()
         size = (WIDTH, HEIGHT * len(quantities) + 1)
@@ -65,11 +75,9 @@ def plot(
         axes = np.atleast_1d(np.asarray(ax, dtype=object)).ravel()
         if len(axes) != len(quantities):
             raise UsageError.saying(f"there are {len(quantities)} quantities, and {len(axes)} axes in `ax`")
-    for axis, name in zip(axes, quantities):
-        for label, run in labelled.items():
-            x = run.times if over is None else run.values(over)
-            y = run.values(name, order) if by is None else run.sensitivity(name, by, order)
-            axis.plot(x, y, **{"label": label, **style})
+    for axis, name, curves in zip(axes, quantities, ordinates):
+        for label, y in curves.items():
+            axis.plot(abscissas[label], y, **{"label": label, **style})
         axis.set_ylabel(_ordinate(model, name, order, by))
         axis.grid(True, alpha=0.3)
         if len(labelled) > 1:
@@ -79,6 +87,20 @@ def plot(
         (run,) = labelled.values()
         axes[0].set_title(model.name + (f", {run.case}" if run.case else ""))
     return axes[0] if len(quantities) == 1 else axes
+
+
+def _check_style(style: dict[str, Any]) -> None:
+    """Checks that matplotlib can draw lines with these arguments."""
+    _matplotlib()
+    from matplotlib.lines import Line2D
+
+    for name, value in style.items():
+        try:
+            Line2D([], [], **{name: value})
+        except (AttributeError, TypeError, ValueError) as error:
+            own = get_close_matches(name, ["over", "order", "by", "ax"], 1)
+            help = f"; did you mean `{own[0]}`?" if own else ""
+            raise ArgumentError.saying(f"`plot` with `{name}`, for matplotlib: {error}{help}") from None
 
 
 def _ordinate(model, name: str, order: int | str, by: str | None) -> str:
@@ -120,6 +142,15 @@ def animation(run: Run, seconds: float, frames: int, size: float) -> Any:
 
         def _repr_html_(self) -> str:
             return self.to_jshtml()
+
+        def save(self, filename: str | os.PathLike, *args: Any, **more: Any) -> None:
+            path = files.target(filename)
+            try:
+                super().save(path, *args, **more)
+            except OSError as error:
+                raise FileError.of_system("written", path, error) from error
+            except ValueError as error:
+                raise UsageError.saying(f"`{path}` cannot be written by matplotlib: {error}") from error
 
     parts = json.loads(model._native.skeleton(run._index, list(run._native.design)))
     bodies = [None, *(run.body(name) for name in model.bodies)]

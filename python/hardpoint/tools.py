@@ -107,7 +107,21 @@ def saved(model: Model) -> Iterator[Path]:
                     shutil.copyfile(Path(model._whereabouts, name), path)
         path = Path(folder, "model.toml")
         path.write_bytes(model.text.encode())
-        yield path
+        try:
+            yield path
+        except HardpointError as error:
+            raise _renamed(error, str(path), model.file) from None
+
+
+def _renamed(error: HardpointError, old: str, new: str) -> HardpointError:
+    """The error with another name of a file."""
+
+    def named(value: Any) -> Any:
+        if isinstance(value, tuple):
+            return tuple(named(one) for one in value)
+        return value.replace(old, new) if isinstance(value, str) else value
+
+    return type(error)(tuple(Diagnostic(**{key: named(value) for key, value in vars(one).items()}) for one in error.diagnostics))
 
 
 def _case(model: Model, case: str | None) -> list[str]:

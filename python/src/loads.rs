@@ -25,7 +25,7 @@ impl Model {
         let (file, analysis, changes) = (&self.cases[case], self.analysis(case)?, self.changes(&design)?);
         let (model, units) = (&file.model, file.units);
         if !model.has_loads() {
-            let why = "the model has no masses and forces: its joints have no reactions; add `[masses]` or `[forces]`";
+            let why = "the model has no masses and forces: its joints have no reactions and its drivers no forces; add `[masses]` or `[forces]`";
             return Err(Failure::Misunderstood(why.into()).into());
         }
         let found = patiently(py, None, |watch| watch.over(analysis).loads(&changes))?;

@@ -98,6 +98,8 @@ def test_designs_that_lock_raise_or_are_listed(strut):
         (lambda m: m.run().plot(5), "`names` is a name or a list of names, not 5"),
         (lambda m: m.run().plot([]), "`names` is empty"),
         (lambda m: hardpoint.plot([m], "toe"), "is not a run"),
+        (lambda m: hardpoint.Function(m, metrics=["toe"]), "`Function` has no argument `metrics`; there are `model`"),
+        (lambda m: m.run(times=[]), "output times are a list of increasing numbers"),
         (lambda m: hardpoint.Function(m, of=[], variables=["ball_joint_z"]), "`of` is empty"),
         (lambda m: hardpoint.Function(m, of="toe", variables=[]), "`variables` is empty"),
         (lambda m: hardpoint.Function(m, of="toe", variables=["ball_joint_z"])("a"), "is not a number"),
@@ -174,6 +176,13 @@ def test_errors_of_files_name_the_file_of_the_user(strut, tmp_path):
         hardpoint.load_run(tmp_path)
     with pytest.raises(hardpoint.UsageError, match="a path is a text"):
         run.save(5)
+
+
+def test_errors_of_the_command_name_a_changed_model_as_its_own_errors_do(strut):
+    changed = strut.with_(description="changed")
+    with pytest.raises(hardpoint.UsageError, match="is empty") as raised:
+        changed.table({"strut_drive": (1, -1)}, of="toe", error="0.01deg")
+    assert f"`{changed.file}`: the range of `strut_drive` is empty" in str(raised.value) and raised.value.element == changed.file
 
 
 def test_every_file_that_cannot_be_written_is_an_error_of_files(strut, tmp_path):

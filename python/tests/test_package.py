@@ -118,6 +118,13 @@ def test_plots_have_units_and_the_numbers_of_the_run(toe):
     with pytest.raises(hardpoint.UsageError, match="did you mean `toe`"):
         run.plot("tow")
     pyplot.close("all")
+    # Arguments that matplotlib does not know are errors of the package, which leave no figure.
+    for wrong, says in (({"colour": "r"}, "`plot` with `colour`"), ({"ordr": 1}, "did you mean `order`"), ({"lw": "x"}, "with `lw`")):
+        with pytest.raises(hardpoint.UsageError, match=says):
+            run.plot("toe", **wrong)
+    assert not pyplot.get_fignums()
+    assert run.plot("toe", c="r", ls="--", marker="o", alpha=0.5).lines[0].get_linestyle() == "--"
+    pyplot.close("all")
 
 
 def test_an_animation_moves_the_skeleton_and_is_written(strut, tmp_path):
@@ -126,6 +133,10 @@ def test_an_animation_moves_the_skeleton_and_is_written(strut, tmp_path):
     player = strut.run().animate(frames=4)
     player.save(tmp_path / "motion.gif", writer="pillow")
     assert (tmp_path / "motion.gif").read_bytes()[:6] == b"GIF89a"
+    with pytest.raises(hardpoint.FileError, match="No such file or directory"):
+        player.save(tmp_path / "none" / "motion.gif", writer="pillow")
+    with pytest.raises(hardpoint.UsageError, match="cannot be written by matplotlib: unknown file extension"):
+        player.save(tmp_path / "motion.abc", writer="pillow")
     assert "<script" in player._repr_html_() and repr(player).startswith("<hardpoint animation of 'MacPherson strut")
     with pytest.raises(hardpoint.UsageError, match="positive"):
         strut.run().animate(seconds=0)
