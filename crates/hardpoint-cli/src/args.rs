@@ -489,8 +489,9 @@ interpolation the mixed first derivatives. The knots are chosen so that the erro
 the interpolation is below the permitted one everywhere in the ranges, which is proved
 in interval arithmetic, not sampled. Other drivers remain in the design configuration.
 
-The file's ending selects the format: .csv, .json (with units and errors), or .txt for
-CombiTable1Ds and CombiTable2Ds of Modelica, in SI and for linear interpolation.
+The file's ending selects the format: .csv, .json (with units and errors), .txt for
+CombiTable1Ds and CombiTable2Ds of Modelica, in SI, or .adm for SPLINE statements of
+Adams. The last two are linear: their points are those of linear interpolation.
 
 Examples:
   hardpoint map models/double_wishbone.toml --over spring_drive=-16..24 --of toe --error 0.001deg -o toe.csv
@@ -511,10 +512,10 @@ pub struct Map {
     /// Permitted error: of all outputs with this unit, or of one, such as `toe=0.001deg`; may be repeated
     #[arg(long, value_name = "[NAME=]ERROR", value_delimiter = ',', required = true)]
     pub error: Vec<String>,
-    /// Interpolation of the table [default: hermite; for Modelica linear]
+    /// Interpolation of the table [default: hermite; for Modelica and Adams linear]
     #[arg(long, value_enum)]
     pub interpolation: Option<Interpolation>,
-    /// The file to write: .csv, .json or .txt (Modelica)
+    /// The file to write: .csv, .json, .txt (Modelica) or .adm (Adams)
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
 }

@@ -26,6 +26,8 @@ enum Format {
     Json,
     /// Tables of the Modelica Standard Library.
     Modelica,
+    /// Splines of Adams Solver.
+    Adams,
 }
 
 impl Format {
@@ -34,7 +36,35 @@ impl Format {
             "csv" => Some(Self::Csv),
             "json" => Some(Self::Json),
             "txt" => Some(Self::Modelica),
+            "adm" => Some(Self::Adams),
             _ => None,
+        }
+    }
+
+    /// Program that reads values without derivatives, over one or two drivers.
+    fn reader(self) -> Option<&'static str> {
+        match self {
+            Self::Csv | Self::Json => None,
+            Self::Modelica => Some("tables of Modelica"),
+            Self::Adams => Some("splines of Adams"),
+        }
+    }
+
+    /// Units of the numbers: those of a model file, or those of the other program.
+    fn units(self, own: Units) -> Units {
+        match self {
+            Self::Csv | Self::Json => own,
+            Self::Modelica => Units { length: LengthUnit::Metre, angle: AngleUnit::Radian },
+            // Functions of Adams are in the length unit of the dataset, and in rad.
+            Self::Adams => Units { angle: AngleUnit::Radian, ..own },
+        }
+    }
+
+    /// Minimum number of intervals of each range. A spline of Adams has at least four points.
+    fn intervals(self) -> usize {
+        match self {
+            Self::Csv | Self::Json | Self::Modelica => 1,
+            Self::Adams => 4,
         }
     }
 }
@@ -49,22 +79,24 @@ fn map_of(session: &Session, options: &args::Map) -> Result<Outcome, Outcome> {
     let to = &options.output;
     session.may_save(&options.common.model, Some(to))?;
     let Some(format) = Format::of(to) else {
-        let why =
-            format!("`{}` is no table: name a .csv, .json or .txt (Modelica) file with `-o`", to.display());
+        let why = format!(
+            "`{}` is no table: name a .csv, .json, .txt (Modelica) or .adm (Adams) file with `-o`",
+            to.display()
+        );
         return Err(session.misunderstood(&why));
     };
-    let interpolation = match (options.interpolation, format) {
-        (Some(args::Interpolation::Hermite), Format::Modelica) => {
+    let interpolation = match (options.interpolation, format.reader()) {
+        (Some(args::Interpolation::Hermite), Some(reader)) => {
             let why =
-                "tables of Modelica have no given derivatives: use `--interpolation linear`, or a .json file";
-            return Err(session.misunderstood(why));
+                format!("{reader} have no given derivatives: use `--interpolation linear`, or a .json file");
+            return Err(session.misunderstood(&why));
         }
-        (Some(args::Interpolation::Linear), _) | (None, Format::Modelica) => Interpolation::Linear,
-        (Some(args::Interpolation::Hermite) | None, Format::Csv | Format::Json) => Interpolation::Hermite,
+        (Some(args::Interpolation::Linear), _) | (None, Some(_)) => Interpolation::Linear,
+        (Some(args::Interpolation::Hermite) | None, None) => Interpolation::Hermite,
     };
-    if format == Format::Modelica && options.over.len() > 2 {
-        let why = "tables of Modelica have one or two inputs: fix a driver, or write a .json file";
-        return Err(session.misunderstood(why));
+    if let Some(reader) = format.reader().filter(|_| options.over.len() > 2) {
+        let why = format!("{reader} have one or two inputs: fix a driver, or write a .json file");
+        return Err(session.misunderstood(&why));
     }
     let file = session.read(&options.common.model)?;
     let refused = |error: RequestError| session.refused(&file, &error);
@@ -77,7 +109,8 @@ fn map_of(session: &Session, options: &args::Map) -> Result<Outcome, Outcome> {
     };
     let errors = options.error.iter().map(error).collect::<Result<Vec<_>, _>>()?.concat();
     let overrides = Overrides { over, of: options.of.clone(), errors, interpolation };
-    let request = Request::of(&file.model, overrides).map_err(refused)?;
+    let mut request = Request::of(&file.model, overrides).map_err(refused)?;
+    request.intervals = format.intervals();
     // The mechanism can be driven, or the reasons are given.
     session.plan(&file, options.common.formulation())?;
     let found = {
@@ -89,17 +122,12 @@ fn map_of(session: &Session, options: &args::Map) -> Result<Outcome, Outcome> {
         solve(&file.model, options.common.formulation(), &request, &mut more)
     };
     let table = found.map_err(|error| failed(session, &file, &request, &error))?;
-    // Modelica is in SI.
-    let units = if format == Format::Modelica {
-        Units { length: LengthUnit::Metre, angle: AngleUnit::Radian }
-    } else {
-        file.units
-    };
-    let fact = MapTableFact::of(&file.model, units, &request, &table);
+    let fact = MapTableFact::of(&file.model, format.units(file.units), &request, &table);
     let written = write_alone(to, |out| match format {
         Format::Csv => fact.write_csv(out),
         Format::Json => out.write_all(json_text(&fact).as_bytes()),
         Format::Modelica => fact.write_modelica(out),
+        Format::Adams => fact.write_adams(out),
     });
     written.map_err(|e| session.not_written(&e))?;
     if options.common.json {

@@ -184,15 +184,10 @@ impl MapTableFact {
     /// Fails if it cannot be written.
     pub fn write_modelica(&self, mut out: impl Write) -> io::Result<()> {
         writeln!(out, "#1")?;
-        writeln!(
-            out,
-            "# {} over {}",
-            self.model,
-            self.drivers.iter().map(|a| a.name.as_str()).collect::<Vec<_>>().join(", ")
-        )?;
+        writeln!(out, "# {}", self.title())?;
         writeln!(out, "# smoothness = LinearSegments; extrapolation = NoExtrapolation")?;
         for axis in &self.drivers {
-            writeln!(out, "# {} in {}", axis.name, axis.unit)?;
+            writeln!(out, "# {} in {}", comment(&axis.name), axis.unit)?;
         }
         let names = self.table_names();
         for (output, table) in self.outputs.iter().zip(&names) {
@@ -203,7 +198,9 @@ impl MapTableFact {
             writeln!(
                 out,
                 "# {} in {}, error at most {:e} (proved){renamed}",
-                output.name, output.unit, output.proved_error
+                comment(&output.name),
+                output.unit,
+                output.proved_error
             )?;
         }
         let row = |out: &mut dyn Write, numbers: &mut dyn Iterator<Item = f64>| {
@@ -235,6 +232,45 @@ impl MapTableFact {
         Ok(())
     }
 
+    /// Writes a `SPLINE` statement of Adams Solver for each output, in these units: a curve over one driver, x, or a
+    /// family of curves over two, x and z. The identifiers are 1, 2 and so on, in the order of the outputs.
+    ///
+    /// # Errors
+    /// Fails if it cannot be written.
+    pub fn write_adams(&self, mut out: impl Write) -> io::Result<()> {
+        writeln!(out, "! {}", self.title())?;
+        for (axis, name) in self.drivers.iter().zip(["x", "z"]) {
+            writeln!(out, "! {name}: {} in {}", comment(&axis.name), axis.unit)?;
+        }
+        writeln!(out, "! errors are proved for linear interpolation")?;
+        for (k, output) in self.outputs.iter().enumerate() {
+            let (id, values) = (k + 1, &output.numbers[0].values);
+            let (name, unit, error) = (comment(&output.name), &output.unit, output.proved_error);
+            writeln!(out, "! {id}: {name} in {unit}, error at most {error:e}\nSPLINE/{id}")?;
+            match &self.drivers[..] {
+                [x] => {
+                    write_list(&mut out, "X", x.knots.iter().copied())?;
+                    write_list(&mut out, "Y", values.iter().copied())?;
+                }
+                [x, z, ..] => {
+                    write_list(&mut out, "X", x.knots.iter().copied())?;
+                    for (j, z_j) in z.knots.iter().enumerate() {
+                        let curve = values.iter().skip(j).step_by(z.knots.len()).copied();
+                        write_list(&mut out, "Y", [*z_j].into_iter().chain(curve))?;
+                    }
+                }
+                [] => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// Name of the model, with those of the drivers.
+    fn title(&self) -> String {
+        let drivers: Vec<&str> = self.drivers.iter().map(|axis| axis.name.as_str()).collect();
+        comment(&format!("{} over {}", self.model, drivers.join(", ")))
+    }
+
     /// Names of the outputs' tables for Modelica, in which names have no dots; no two are the same.
     fn table_names(&self) -> Vec<String> {
         let plain = |name: &str| name.replace(|c: char| !c.is_ascii_alphanumeric(), "_");
@@ -253,6 +289,30 @@ impl MapTableFact {
         };
         self.outputs.iter().map(one).collect()
     }
+}
+
+/// Text in one line.
+fn comment(text: &str) -> String {
+    text.replace(char::is_control, " ")
+}
+
+/// Writes an argument of an Adams statement, with continuation lines of at most 80 columns, which begin with commas.
+fn write_list(out: &mut impl Write, name: &str, numbers: impl Iterator<Item = f64>) -> io::Result<()> {
+    const COLUMNS: usize = 80;
+    let mut line = format!(", {name}=");
+    for (k, x) in numbers.enumerate() {
+        // A number has a decimal point, also before its exponent.
+        let text = format!("{x:?}");
+        let text = if text.contains('.') { text } else { text.replace('e', ".0e") };
+        let separator = if k == 0 { "" } else { ", " };
+        if line.len() + separator.len() + text.len() > COLUMNS {
+            writeln!(out, "{line}")?;
+            line = format!(", {text}");
+        } else {
+            line += &format!("{separator}{text}");
+        }
+    }
+    writeln!(out, "{line}")
 }
 
 /// Description of the reason why there is no table, and an instruction; `None` if the mechanism cannot be driven, or

@@ -124,3 +124,98 @@ time = { end = 1, steps = 4 }
     let heading = text.lines().find(|line| line.starts_with("# a b in ")).unwrap();
     assert!(heading.ends_with("(proved), table a_b_2"), "{heading}");
 }
+
+/// Splines of a dataset of Adams Solver by their identifiers: x, and the curves, with z first if there are several.
+fn splines(text: &str) -> Vec<(usize, Vec<f64>, Vec<Vec<f64>>)> {
+    let mut statements: Vec<String> = Vec::new();
+    for line in text.lines() {
+        assert!(line.len() <= 80, "{line}");
+        match line.chars().next() {
+            Some('!') => {}
+            Some(',') => statements.last_mut().unwrap().push_str(line),
+            _ => statements.push(line.to_owned()),
+        }
+    }
+    let spline = |statement: &String| {
+        let (head, arguments) = statement.split_once(',').unwrap();
+        let id = head.strip_prefix("SPLINE/").unwrap().parse().unwrap();
+        let mut lists: Vec<(&str, Vec<f64>)> = Vec::new();
+        for part in arguments.split(',') {
+            let number = match part.split_once('=') {
+                Some((name, number)) => {
+                    lists.push((name.trim(), Vec::new()));
+                    number
+                }
+                None => part,
+            };
+            assert!(number.contains('.'), "{number}");
+            lists.last_mut().unwrap().1.push(number.trim().parse().unwrap());
+        }
+        assert!(lists[0].0 == "X" && lists[1..].iter().all(|(name, _)| *name == "Y"), "{statement}");
+        let mut lists = lists.into_iter().map(|(_, numbers)| numbers);
+        (id, lists.next().unwrap(), lists.collect())
+    };
+    statements.iter().map(spline).collect()
+}
+
+#[test]
+fn splines_of_adams_are_curves_and_families_with_the_proved_error() {
+    let bench = Bench::with(&[]);
+    let model = r#"
+name = "two cranks"
+units = { length = "mm", angle = "deg" }
+planar = "xy"
+hardpoints = { O = [0, 0], A = [20, 5], Q = [100, 0], B = [100, 30] }
+bodies = { ground = ["O", "Q"], crank = ["O", "A"], arm = ["Q", "B"] }
+drivers = { one = { joint = "O", law = "t" }, two = { joint = "Q", law = "t" } }
+points = { A = { body = "crank", at = "A" }, B = { body = "arm", at = "B" } }
+measures.sum = { type = "expression", expression = "A.x + B.y" }
+measures.turn = { type = "coordinate", joint = "O" }
+time = { end = 1, steps = 4 }
+"#;
+    bench.put("cranks.toml", model);
+    let over = ["--over", "one=-20..40", "--over", "two=-30..30"];
+    let map = |over: &[&str], more: &[&str]| {
+        let rest = ["--of", "sum,turn", "--error", "sum=0.1mm,turn=0.01deg", "-o", "x.adm"];
+        bench.run(&[&["map", "cranks.toml"][..], over, &rest, more].concat())
+    };
+    let text = |output: std::process::Output| {
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        bench.text("x.adm")
+    };
+    let exact = |one: f64, two: f64| 20.0 * one.cos() - 5.0 * one.sin() + 30.0 * two.cos();
+    let radians = |from: f64, to: f64, part: f64| (from + (to - from) * part).to_radians();
+    let cell = |knots: &[f64], at: f64| {
+        let k = knots.partition_point(|knot| *knot <= at).clamp(1, knots.len() - 1) - 1;
+        (k, (at - knots[k]) / (knots[k + 1] - knots[k]))
+    };
+    let between = |y: &[f64], (k, part): (usize, f64)| y[k] + (y[k + 1] - y[k]) * part;
+
+    let curves = splines(&text(map(&over[..2], &[])));
+    assert_eq!(curves.iter().map(|c| c.0).collect::<Vec<_>>(), [1, 2]);
+    for n in 0..=100 {
+        let at = radians(-20.0, 40.0, f64::from(n) / 100.0);
+        let [sum, turn] = [0, 1].map(|k| between(&curves[k].2[0], cell(&curves[k].1, at)));
+        assert!((sum - exact(at, 0.0)).abs() <= 0.1 && (turn - at).abs() <= 2e-4, "{at}: {sum}, {turn}");
+    }
+    // Also of a line there are at least four points.
+    assert!(curves[1].1.len() >= 4 && curves[1].2[0].len() == curves[1].1.len());
+
+    let families = splines(&text(map(&over, &[])));
+    let (_, x, family) = &families[0];
+    let z: Vec<f64> = family.iter().map(|curve| curve[0]).collect();
+    assert!(z.len() >= 4 && z.is_sorted() && family.iter().all(|curve| curve.len() == 1 + x.len()));
+    for n in 0..=100 {
+        let part = f64::from(n) / 100.0;
+        let (one, two) = (radians(-20.0, 40.0, part), radians(-30.0, 30.0, (7.0 * part).fract()));
+        let (j, beside) = cell(&z, two);
+        let [near, far] = [j, j + 1].map(|j| between(&family[j][1..], cell(x, one)));
+        let found = near + (far - near) * beside;
+        assert!((found - exact(one, two)).abs() <= 0.1, "{one}, {two}: {found}");
+    }
+
+    let refused = map(&over, &["--interpolation", "hermite"]);
+    assert_eq!(refused.status.code(), Some(2));
+    let why = String::from_utf8(refused.stderr).unwrap();
+    assert!(why.contains("splines of Adams have no given derivatives"), "{why}");
+}

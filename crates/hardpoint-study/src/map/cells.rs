@@ -145,8 +145,13 @@ impl Search<'_> {
 
     /// Halves intervals until the error of every cell is permitted.
     fn refine(&mut self) -> Result<(Vec<Vec<f64>>, Vec<Cell>), MapError> {
-        let mut knots: Vec<Vec<f64>> = self.ranges.iter().map(|range| range.to_vec()).collect();
-        let mut cells = vec![Cell::default()];
+        let count = self.request.intervals;
+        let even = |[from, to]: &[f64; 2]| {
+            let inside = (1..count).map(|k| from + (to - from) * (k as f64 / count as f64));
+            [*from].into_iter().chain(inside).chain([*to]).collect()
+        };
+        let mut knots: Vec<Vec<f64>> = self.ranges.iter().map(even).collect();
+        let mut cells = vec![Cell::default(); knots.iter().map(|knots| knots.len() - 1).product()];
         loop {
             let mut halved: HashSet<(usize, usize)> = HashSet::new();
             self.excess = [0.0; MOST_LEVELS];

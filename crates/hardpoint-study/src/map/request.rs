@@ -43,6 +43,8 @@ pub struct Request {
     pub outputs: Vec<MappedOutput>,
     /// Interpolation.
     pub interpolation: Interpolation,
+    /// Minimum number of intervals of each range.
+    pub intervals: usize,
 }
 
 /// Choices of the caller.
@@ -201,6 +203,6 @@ impl Request {
             }
             outputs.push(MappedOutput { name, output, dimension, error });
         }
-        Ok(Self { axes, outputs, interpolation })
+        Ok(Self { axes, outputs, interpolation, intervals: 1 })
     }
 }
