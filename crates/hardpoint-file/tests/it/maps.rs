@@ -271,6 +271,18 @@ fn the_error_of_a_map_over_three_drivers_is_below_its_bound() {
     assert!(worst[0] <= 1.0, "{worst:?}");
 }
 
+/// Unknowns of the platform are in m and rad. In a norm of row sums without weights, a box had to be a few tenths of a
+/// degree wide, and the range took a thousand of them.
+#[test]
+fn a_platform_with_unknowns_in_m_and_rad_takes_few_boxes() {
+    let model = model(&gallery("delta"));
+    let range = [-1.0_f64, 1.0].map(f64::to_radians);
+    let over = ["motor_1", "motor_2", "motor_3"].map(|name| (name, range));
+    let table = table(&model, &over, &[("z", 1e-4)], Interpolation::Hermite);
+    assert_eq!(table.cells(), 1);
+    assert!(table.boxes < 150, "{} boxes", table.boxes);
+}
+
 #[test]
 fn a_map_reports_its_progress_and_can_be_ended() {
     let model = model(&gallery("three_rrr"));

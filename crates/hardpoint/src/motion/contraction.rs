@@ -28,6 +28,8 @@ const LARGEST_BOX: f64 = 1.0;
 pub(super) const CONTRACTION: f64 = 0.9;
 /// Number of passes of a linear system over its bounds.
 const PASSES: usize = 2;
+/// Number of passes that improve the weights of the norm: unknowns in m and rad differ by a factor of a hundred or so.
+const WEIGHINGS: usize = 8;
 
 /// The formulas of a mechanism over one kind of number. What is given to them is a `dyn Fn`, which makes
 /// one copy of them for each.
@@ -219,6 +221,9 @@ pub(super) struct Contraction {
     /// I - Y J(X), row by row.
     rest: Vec<Interval>,
     n: usize,
+    /// Per unknown: its weight in the norm, positive.
+    weights: Vec<f64>,
+    norm: f64,
 }
 
 impl Contraction {
@@ -234,7 +239,8 @@ impl Contraction {
                 rest[row * n + column] = sum;
             }
         }
-        Self { inverse, rest, n }
+        let (weights, norm) = weighted(&rest, n);
+        Self { inverse, rest, n, weights, norm }
     }
 
     /// `Y b`.
@@ -250,21 +256,20 @@ impl Contraction {
         self.rest.chunks_exact(self.n).map(|row| product(row.iter().copied(), x)).collect()
     }
 
-    /// `|I - Y J|`, in the norm of the largest row sum.
+    /// `|I - Y J|`, in the norm of the largest weighted row sum.
     pub fn norm(&self) -> f64 {
-        let sum = |row: &[Interval]| {
-            row.iter().fold(Interval::zero(), |sum, x| sum + Interval::constant(x.magnitude())).high
-        };
-        self.rest.chunks_exact(self.n).map(sum).fold(0.0, f64::max)
+        self.norm
     }
 
     /// Bounds of x with `J x = b`, within those that are known.
     pub fn solve(&self, b: &[Interval], known: &[Interval]) -> Vec<Interval> {
         let y = self.precondition(b);
-        let k = Interval::constant(self.norm());
-        let size = Interval::constant(y.iter().map(|y| y.magnitude()).fold(0.0, f64::max));
-        let most = (size / (Interval::one() - k)).high;
-        let mut x: Vec<Interval> = known.iter().map(|known| known.and(Interval::symmetric(most))).collect();
+        let weights = || self.weights.iter().map(|w| Interval::constant(*w));
+        let in_weights = y.iter().zip(weights()).map(|(y, w)| (Interval::constant(y.magnitude()) / w).high);
+        let size = Interval::constant(in_weights.fold(0.0, f64::max));
+        let most = size / (Interval::one() - Interval::constant(self.norm));
+        let bounds = weights().map(|w| Interval::symmetric((most * w).high));
+        let mut x: Vec<Interval> = known.iter().zip(bounds).map(|(known, most)| known.and(most)).collect();
         for _ in 0..PASSES {
             let rest = self.remainder(&x);
             for ((x, y), rest) in x.iter_mut().zip(&y).zip(rest) {
@@ -273,6 +278,40 @@ impl Contraction {
         }
         x
     }
+}
+
+/// Weights of the unknowns, and `|R|` in the norm `max_i sum_j |R_ij| w_j / w_i`, which is small if w is near to the
+/// eigenvector of the magnitudes that belongs to their largest eigenvalue.
+fn weighted(rest: &[Interval], n: usize) -> (Vec<f64>, f64) {
+    let norm = |w: &[f64]| {
+        let sum = |row: &[Interval]| {
+            let terms =
+                row.iter().zip(w).map(|(x, w)| Interval::constant(x.magnitude()) * Interval::constant(*w));
+            terms.fold(Interval::zero(), |sum, x| sum + x)
+        };
+        let rows = rest.chunks_exact(n).zip(w).map(|(row, w)| (sum(row) / Interval::constant(*w)).high);
+        rows.fold(0.0, f64::max)
+    };
+    let mut weights = vec![1.0; n];
+    let mut least = norm(&weights);
+    for _ in 0..WEIGHINGS {
+        // (|R| + |R|_w I) w: positive, and the norm never grows.
+        let image = rest.chunks_exact(n).zip(&weights).map(|(row, own)| {
+            least * own + row.iter().zip(&weights).map(|(x, w)| x.magnitude() * w).sum::<f64>()
+        });
+        let image: Vec<f64> = image.collect();
+        let largest = image.iter().copied().fold(0.0, f64::max);
+        let next: Vec<f64> = image.iter().map(|w| w / largest).collect();
+        if !next.iter().all(|w| w.is_normal()) {
+            break;
+        }
+        let found = norm(&next);
+        if !(found < least) {
+            break;
+        }
+        (weights, least) = (next, found);
+    }
+    (weights, least)
 }
 
 fn product(row: impl Iterator<Item = Interval>, x: &[Interval]) -> Interval {

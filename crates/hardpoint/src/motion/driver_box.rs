@@ -250,7 +250,7 @@ impl BoxSolver {
                 let demand: Vec<Interval> = demand.iter().map(|row| -row.coefficients()[e]).collect();
                 let mut x: Vec<Interval> =
                     unknowns.iter().map(|c| found.coordinates[c.0].coefficients()[e]).collect();
-                // The first bounds are those of the largest unknown, whatever its unit, for all of them.
+                // The first bounds are those of the largest unknown in the weights of the norm, for all of them.
                 for _ in 0..SHARPENINGS {
                     x = step.solve(&demand, &x);
                 }
@@ -274,6 +274,9 @@ pub(crate) struct DriverBoxes<'m> {
     solver: BoxSolver,
     /// Per variable: index of its driver.
     drivers: Vec<usize>,
+    /// Positions without derivatives, which connect boxes at their corners.
+    positions: HashMap<Key, Result<Rc<BoxPoint>, BoxFailure>>,
+    /// The same with derivatives.
     points: HashMap<Key, Result<Rc<BoxPoint>, BoxFailure>>,
     /// Per box that was proved: what is unique in it, with the rotations from which the coordinates of balls count.
     unique: HashMap<Key, (Rc<Vec<Quat>>, Vec<Interval>)>,
@@ -286,13 +289,13 @@ impl<'m> DriverBoxes<'m> {
     pub fn new(mut one: Stepper<'m>, drivers: Vec<usize>) -> Result<Self, Box<Stop>> {
         start_at_rest(&mut one, 0.0)?;
         let solver = BoxSolver::new(&one.mechanism);
-        let mut all =
-            Self { one, solver, drivers, points: HashMap::new(), unique: HashMap::new(), computed: 0 };
+        let (positions, points) = (HashMap::new(), HashMap::new());
+        let mut all = Self { one, solver, drivers, positions, points, unique: HashMap::new(), computed: 0 };
         // The point at which all positions begin.
         let at = all.one.mechanism.saved.clone();
         let values = vec![0.0; all.drivers.len()];
-        let point = all.enclose_point(&values, at);
-        all.points.insert(key(&values), point);
+        let point = all.enclose_point(&values, at, false);
+        all.positions.insert(key(&values), point);
         Ok(all)
     }
 
@@ -302,32 +305,53 @@ impl<'m> DriverBoxes<'m> {
         if let Some(known) = self.points.get(&key) {
             return known.clone();
         }
-        let found = self.position(values).and_then(|at| self.enclose_point(values, at));
+        let found = self.position(values);
+        let found = found.and_then(|position| self.enclose_point(values, position.at.clone(), true));
         self.points.insert(key, found.clone());
         found
     }
 
-    fn enclose_point(&mut self, values: &[f64], at: AcceptedPosition) -> Result<Rc<BoxPoint>, BoxFailure> {
+    /// Narrow bounds of the position at a point, without derivatives.
+    fn position(&mut self, values: &[f64]) -> Result<Rc<BoxPoint>, BoxFailure> {
+        let key = key(values);
+        if let Some(known) = self.positions.get(&key) {
+            return known.clone();
+        }
+        let found = self.reach(values).and_then(|at| self.enclose_point(values, at, false));
+        self.positions.insert(key, found.clone());
+        found
+    }
+
+    fn enclose_point(
+        &mut self,
+        values: &[f64],
+        at: AcceptedPosition,
+        derivatives: bool,
+    ) -> Result<Rc<BoxPoint>, BoxFailure> {
         let boxed: Vec<Interval> = values.iter().map(|x| Interval::constant(*x)).collect();
-        let drivers = self.drivers_over(&boxed);
-        let wanted =
-            Wanted { drivers, since: Vec::new(), at: &at, narrow: None, variables: self.drivers.len() };
+        let variables = if derivatives { values.len() } else { 0 };
+        let drivers = self.drivers_over(&boxed, variables);
+        let wanted = Wanted { drivers, since: Vec::new(), at: &at, narrow: None, variables };
         let enclosure = self.solver.enclose(&self.one.mechanism.topology, &wanted)?;
         Ok(Rc::new(BoxPoint { at, enclosure }))
     }
 
-    /// Coordinate of every driver over a box of driver values.
-    fn drivers_over(&self, boxed: &[Interval]) -> Vec<Taylor<Interval>> {
+    /// Coordinate of every driver over a box of driver values, as variables or as constants.
+    fn drivers_over(&self, boxed: &[Interval], variables: usize) -> Vec<Taylor<Interval>> {
         let drivers = &self.one.mechanism.model.drivers;
         let mut coordinates = vec![Taylor::zero(); drivers.len()];
         for (k, (d, over)) in self.drivers.iter().zip(boxed).enumerate() {
-            coordinates[*d] = drivers[*d].with_sense(Taylor::variable(*over, k, boxed.len()));
+            let value = match variables {
+                0 => Taylor::constant(*over),
+                _ => Taylor::variable(*over, k, variables),
+            };
+            coordinates[*d] = drivers[*d].with_sense(value);
         }
         coordinates
     }
 
     /// Position at a point, by a straight path from the nearest one that is known.
-    fn position(&mut self, values: &[f64]) -> Result<AcceptedPosition, BoxFailure> {
+    fn reach(&mut self, values: &[f64]) -> Result<AcceptedPosition, BoxFailure> {
         let Mechanism { model, driver_units: units, .. } = &self.one.mechanism;
         let coordinates: Vec<f64> =
             self.drivers.iter().zip(values).map(|(d, x)| model.drivers[*d].with_sense(*x)).collect();
@@ -335,7 +359,7 @@ impl<'m> DriverBoxes<'m> {
             let part = |(d, x): (&usize, &f64)| ((at.drivers[*d][0] - x) / units[*d]).powi(2);
             self.drivers.iter().zip(&coordinates).map(part).sum::<f64>()
         };
-        let known = self.points.iter().filter_map(|(key, known)| Some((key, &known.as_ref().ok()?.at)));
+        let known = self.positions.iter().filter_map(|(key, known)| Some((key, &known.as_ref().ok()?.at)));
         // Ties are broken by the values, so that nothing depends on the order of the map.
         let near = known.min_by(|a, b| away(a.1).total_cmp(&away(b.1)).then_with(|| a.0.cmp(b.0)));
         let near = near.map(|(_, at)| at.clone());
@@ -364,7 +388,7 @@ impl<'m> DriverBoxes<'m> {
         let middle = self.point(&values)?;
         let since = boxed.iter().zip(&values).map(|(over, x)| *over - Interval::constant(*x)).collect();
         let wanted = Wanted {
-            drivers: self.drivers_over(boxed),
+            drivers: self.drivers_over(boxed, boxed.len()),
             since,
             at: &middle.at,
             narrow: Some(&middle.enclosure),
@@ -390,7 +414,7 @@ impl<'m> DriverBoxes<'m> {
     }
 
     fn is_in(&mut self, unique: &(Rc<Vec<Quat>>, Vec<Interval>), values: &[f64]) -> Result<(), BoxFailure> {
-        let point = self.point(values)?;
+        let point = self.position(values)?;
         let narrow = &point.enclosure;
         let at = (&narrow.centres[..], |k: usize| narrow.coordinates[k].value());
         let same = is_within(&self.one.mechanism.topology, at, (&unique.0, &unique.1));
