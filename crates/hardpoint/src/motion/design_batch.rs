@@ -50,7 +50,7 @@ struct Drive {
 pub(crate) struct DesignBatch<'m> {
     /// The nominal design.
     nominal: Mechanism<'m>,
-    /// Its position in the design configuration, with the determinants there.
+    /// Position of the nominal design in the design configuration, with the determinants there.
     start: AcceptedPosition,
     determinants: Vec<f64>,
     /// Motion of the drivers to each position: those of the ramp, of which there are this many, then the output times,
