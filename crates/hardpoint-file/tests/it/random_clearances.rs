@@ -28,9 +28,10 @@ const DENSE: usize = 500;
 /// Bounds of the proof of one pair, at most, and of one with a mesh.
 const MOST_BOUNDS: usize = 200;
 const MOST_BOUNDS_OF_MESH: usize = 4_000;
-/// Points of one refinement of a sampled minimum, and the number of refinements: each is narrower by half of them.
+/// Points of one refinement of a sampled minimum, and the number of refinements: each is narrower by half of them. At a
+/// kink the deviation of the last samples is of first order in their spacing.
 const REFINED: usize = 24;
-const REFINEMENTS: usize = 7;
+const REFINEMENTS: usize = 9;
 /// Sampled minima that are refined: the lowest ones.
 const LOWEST: usize = 3;
 
