@@ -5,6 +5,7 @@
 
 mod curves;
 mod emit;
+mod header;
 mod replay;
 
 use std::collections::HashSet;
@@ -24,6 +25,8 @@ use hardpoint_tape::{Operand, Program};
 
 use crate::{Companion, ExportError, ExportOptions, ExportedModel, Format, Writer};
 use emit::{Function, body_number, literal};
+use header::check_header;
+pub(crate) use header::identifier;
 use replay::{ReplayResult, replay, start_inputs};
 
 /// C format.
@@ -77,40 +80,6 @@ const LEAST_MISFIT: f64 = 1e-9;
 const FOLLOWS_CALL: &str = "    if (!@name@_follows(s, &p, along, dx, o->residual, d))
         return @NAME@_LOCKED;
 ";
-/// Headers of the C standard library.
-const STANDARD_HEADERS: [&str; 31] = [
-    "assert",
-    "complex",
-    "ctype",
-    "errno",
-    "fenv",
-    "float",
-    "inttypes",
-    "iso646",
-    "limits",
-    "locale",
-    "math",
-    "setjmp",
-    "signal",
-    "stdalign",
-    "stdarg",
-    "stdatomic",
-    "stdbit",
-    "stdbool",
-    "stdckdint",
-    "stddef",
-    "stdint",
-    "stdio",
-    "stdlib",
-    "stdnoreturn",
-    "string",
-    "tgmath",
-    "threads",
-    "time",
-    "uchar",
-    "wchar",
-    "wctype",
-];
 /// Numbers of a body, in the order of the programs: r, the columns of A, v, omega, a, alpha.
 const BODY: usize = 24;
 
@@ -214,23 +183,6 @@ pub fn generate(
     let (header, origin) = (source.header(sizes), source.origin());
     let Source { name, measures: Measures { list: measures, .. }, design, .. } = source;
     Ok(MotionSource { source: text, header, name, measures, design, start, origin })
-}
-
-/// Checks that an `#include` finds the header of a source file with this name, and hides no other.
-fn check_header(stem: &str) -> Result<(), ExportError> {
-    let unfit = |why: String, name: String| {
-        let help = format!("choose another name of the file, for example `{name}`");
-        Err(ExportError::UnfitName { why, help })
-    };
-    if STANDARD_HEADERS.contains(&&*stem.to_ascii_lowercase()) {
-        let why = format!("its header `{stem}.h` would hide that of the C standard library");
-        return unfit(why, format!("{stem}_motion"));
-    }
-    // Places of the templates begin with the last one.
-    if let Some(c) = stem.chars().find(|c| c.is_control() || ['"', '\\', '@'].contains(c)) {
-        return unfit(format!("{c:?} cannot be part of the name of its header"), identifier(stem));
-    }
-    Ok(())
 }
 
 /// Reports the measures that are NaN at some output times.
@@ -1023,16 +975,6 @@ impl Source<'_> {
 /// A list that is not empty: C has no arrays without elements.
 fn or_zero(list: Vec<String>) -> Vec<String> {
     if list.is_empty() { vec!["0".to_owned()] } else { list }
-}
-
-/// C identifier that resembles a name.
-pub(crate) fn identifier(name: &str) -> String {
-    let mut plain: String =
-        name.chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' }).collect();
-    if !plain.starts_with(|c: char| c.is_ascii_alphabetic()) {
-        plain.insert_str(0, "m_");
-    }
-    plain
 }
 
 /// Text within a comment.

@@ -9,9 +9,8 @@
 //! like the coordinates. The turn of an angle is the nearest one to the predicted angle. A parameter is corrected on
 //! the piece of its curve on which it is predicted: the numbers of the piece are inputs, too.
 //!
-//! Where the design changes the distance of a point from its curve, the distance is that from the foot of the
-//! perpendicular in the design configuration. The parameter of the foot is one more unknown, which moves with the
-//! design only.
+//! A distance of a point from its curve that changes with the design is that from the foot of the perpendicular in the
+//! design configuration. The parameter of the foot is one more unknown, which moves with the design only.
 //!
 //! [`step_program`]: super::step_program
 
@@ -19,7 +18,7 @@ use hardpoint_tape::{Number, Options, Program, record};
 
 use crate::design::DesignMap;
 use crate::linalg::Factors;
-use crate::model::{CURVE_PIECE, Contact, Curve, Driver, JointId, VariableId};
+use crate::model::{CURVE_PIECE, Contact, Curve, CurvePiece, Driver, JointId, VariableId};
 use crate::number::{self, record as recording};
 use crate::space::Vec3;
 use crate::topology::{ClosureId, RowId, Topology};
@@ -298,6 +297,46 @@ impl DrivenStep {
 /// Every unknown where a step begins, with its unit, and the corrected parameter of every foot.
 type Begin<'a> = (&'a [[Number; 2]], &'a [Number]);
 
+/// Inputs of a recorded step that say where it begins.
+struct Beginning {
+    /// Every unknown, with its unit.
+    inputs: Vec<[Number; 2]>,
+    /// Every foot, with the joint and the piece of the curve.
+    feet: Vec<(JointId, CurvePiece<Number>, Contact<Number>)>,
+}
+
+/// Puts the position at `offset` from the accepted one into a state, as inputs of a recording.
+fn begin(one: &Mechanism<'_>, feet: &[Foot], offset: f64, state: &mut State<Number>) -> Beginning {
+    let (mut inputs, mut contacts, mut placed) = (Vec::new(), Vec::new(), Vec::new());
+    for unknown in Unknown::all(&one.topology, feet) {
+        let DrivenCoordinate { start, unit } = unknown.start(one);
+        let beside = match unknown {
+            Unknown::Channel(Channel::Ball(c, k)) => {
+                one.saved.balls[c.0].nudged(Vec3::new(offset, offset, offset)).component(k)
+            }
+            Unknown::Channel(Channel::Coordinate(_)) => start + offset * unit,
+            Unknown::Angle(_) | Unknown::Contact(..) | Unknown::Foot(..) => start,
+        };
+        let input = Number::input(beside);
+        inputs.push([input, Number::constant(unit)]);
+        match unknown {
+            Unknown::Channel(channel) => channel.put(input, state),
+            Unknown::Angle(r) => state.near[r.0] = input,
+            Unknown::Contact(..) => contacts.push((start, input)),
+            Unknown::Foot(_, foot) => placed.push((foot, start, input)),
+        }
+    }
+    let pieces = one.parts.curves.iter().zip(&contacts);
+    state.pieces = pieces.map(|(curve, (start, _))| curve.piece(*start).map(Number::input)).collect();
+    let contacts = state.pieces.iter().zip(&contacts);
+    state.contacts = contacts.map(|(piece, (_, u))| Contact::on_piece(piece, *u)).collect();
+    let on_curve = |(Foot { joint, curve }, start, u): (Foot, f64, Number)| {
+        let piece = one.parts.curves[curve].piece(start).map(Number::input);
+        (joint, piece, Contact::on_piece(&piece, u))
+    };
+    Beginning { inputs, feet: placed.into_iter().map(on_curve).collect() }
+}
+
 /// Records a step of the nominal design, or of any with these feet, from a position at `offset` from the accepted one,
 /// and returns the program of these outputs.
 fn recorded(
@@ -311,39 +350,7 @@ fn recorded(
     recording::begin();
     let recorded = record(|| {
         let mut state = State::new(model, topology);
-        let (mut inputs, mut contacts, mut feet) = (Vec::new(), Vec::new(), Vec::new());
-        for unknown in Unknown::all(topology, any_design.unwrap_or_default()) {
-            let DrivenCoordinate { start, unit } = unknown.start(one);
-            let beside = match unknown {
-                Unknown::Channel(Channel::Ball(c, k)) => {
-                    one.saved.balls[c.0].nudged(Vec3::new(offset, offset, offset)).component(k)
-                }
-                Unknown::Channel(Channel::Coordinate(_)) => start + offset * unit,
-                Unknown::Angle(_) | Unknown::Contact(..) | Unknown::Foot(..) => start,
-            };
-            let input = Number::input(beside);
-            inputs.push([input, Number::constant(unit)]);
-            match unknown {
-                Unknown::Channel(channel) => channel.put(input, &mut state),
-                Unknown::Angle(r) => state.near[r.0] = input,
-                Unknown::Contact(..) => contacts.push((start, input)),
-                Unknown::Foot(_, foot) => feet.push((foot, start, input)),
-            }
-        }
-        state.pieces = one
-            .parts
-            .curves
-            .iter()
-            .zip(&contacts)
-            .map(|(curve, (start, _))| curve.piece(*start).map(Number::input))
-            .collect();
-        state.contacts =
-            state.pieces.iter().zip(&contacts).map(|(piece, (_, u))| Contact::on_piece(piece, *u)).collect();
-        let feet = feet.into_iter().map(|(Foot { joint, curve }, start, u)| {
-            let piece = one.parts.curves[curve].piece(start).map(Number::input);
-            (joint, piece, Contact::on_piece(&piece, u))
-        });
-        let feet: Vec<_> = feet.collect();
+        let Beginning { inputs, feet } = begin(one, any_design.unwrap_or_default(), offset, &mut state);
         // Inputs are the drivers' values, the kernel drives coordinates.
         let coordinate = |(driver, saved): (&Driver, &[f64; ORDERS])| {
             number::each(saved, |x| driver.with_sense(Number::input(driver.with_sense(x))))

@@ -75,6 +75,7 @@ const CRATES: &[(&str, &[&str])] = &[
     ("hardpoint-engine", &["hardpoint-studio"]),
     ("hardpoint-bench", &["hardpoint", "hardpoint-file"]),
     ("hardpoint-shared", &[]),
+    ("hardpoint-unit", &[]),
     (
         "hardpoint-python",
         &[
