@@ -2,7 +2,7 @@ import { readFileSync } from 'node:fs'
 import type { Page } from 'playwright-core'
 import { describe, expect, inject, test } from 'vitest'
 import { NO_3D } from './browser'
-import { pages, ready } from './pages'
+import { pages, ready, settles } from './pages'
 import { curve, drawn, slide } from './person'
 import { motionBeside } from './table'
 
@@ -15,10 +15,6 @@ const visit = pages(NO_3D)
 const open = async (name: string, viewport = { width: 1440, height: 900 }) => {
   page = await visit(models[name], { viewport })
   await ready(page)
-}
-const settled = async () => {
-  await page.waitForFunction(() => document.getElementById('page')!.dataset.settled === 'no')
-  await page.waitForFunction(() => document.getElementById('page')!.dataset.settled === 'yes')
 }
 const plot = (k: number) => page.getByTestId(`plot-${k}`)
 const chosen = (k: number, name: string) => plot(k).getByTestId(name).locator('option:checked').innerText()
@@ -67,8 +63,7 @@ describe('after a change', () => {
     const toe = page.getByTestId('card-toe')
     const before = await toe.getByTestId('card-motion').innerText()
     expect(before).toMatch(/^−8\.71 … 8\.95 · slope −0\.0218 deg\/mm$/)
-    await change('tie_rod_outer_z', 5)
-    await settled()
+    await settles(page, () => change('tie_rod_outer_z', 5))
     const after = await toe.getByTestId('card-motion').innerText()
     expect(after).toMatch(/^−[\d.]+ \([+−][\d.]+\) … [\d.]+ \([+−][\d.]+\) · slope −?[\d.]+ deg\/mm$/)
     expect(await toe.getByTestId('card-change').isVisible()).toBe(false)
@@ -125,8 +120,7 @@ describe('the sheet', () => {
       [4, 'forward'],
       [8, 'far'],
     ] as const) {
-      await change('tie_rod_outer_x', by)
-      await settled()
+      await settles(page, () => change('tie_rod_outer_x', by))
       await page.getByTestId('designs').click()
       await page.getByTestId('snapshot-name').fill(name)
       await page.getByTestId('snapshot-keep').click()
@@ -152,8 +146,7 @@ describe('the sheet', () => {
     expect(numberOf((await rows())[1].split('\t')[1])).toBeCloseTo(0, 3)
     await plot(0).getByTestId('difference').click()
     expect(await plot(0).locator('.caption').first().innerText()).toBe('Nothing is changed yet.')
-    await change('tie_rod_inner_z', 5)
-    await settled()
+    await settles(page, () => change('tie_rod_inner_z', 5))
     expect(await plot(0).locator('.caption').first().innerText()).toBe('Change to: original.')
     const differences = (await rows()).map((row) => numberOf(row.split('\t')[1]))
     expect(Math.max(...differences.map(Math.abs))).toBeGreaterThan(0.1)

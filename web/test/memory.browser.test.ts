@@ -2,7 +2,7 @@ import { readFileSync } from 'node:fs'
 import type { Browser, Page } from 'playwright-core'
 import { afterAll, afterEach, beforeAll, describe, expect, inject, test } from 'vitest'
 import { launch, NO_3D, visit, type Visit } from './browser'
-import { ready } from './pages'
+import { ready, settles } from './pages'
 import { slide } from './person'
 
 const { cases, models } = inject('samples')
@@ -32,10 +32,6 @@ afterEach(async () => {
   await page.context().close()
 })
 
-const settled = async (page: Page) => {
-  await page.waitForFunction(() => document.getElementById('page')!.dataset.settled === 'no')
-  await page.waitForFunction(() => document.getElementById('page')!.dataset.settled === 'yes')
-}
 const open = async (name: string, where = flat) => {
   visited = await visit(where, models[name])
   page = visited.page
@@ -111,8 +107,7 @@ describe('work on a design', () => {
     await choose()
     const before = await chosen()
     await page.getByTestId('tab-variables').click()
-    await slide(page, '[data-testid=variable-tie_rod_outer_z] [data-testid=change]', 5)
-    await settled(page)
+    await settles(page, () => slide(page, '[data-testid=variable-tie_rod_outer_z] [data-testid=change]', 5))
     await page.getByTestId('designs').click()
     await page.getByTestId('snapshot-name').fill('higher')
     await page.getByTestId('snapshot-keep').click()
@@ -121,8 +116,7 @@ describe('work on a design', () => {
     await page.getByTestId('restore-bar').waitFor()
     expect(await page.getByTestId('restore-bar').innerText()).toContain('1 change')
     expect(await change('tie_rod_outer_z').inputValue()).toBe('0')
-    await page.getByTestId('restore').click()
-    await settled(page)
+    await settles(page, () => page.getByTestId('restore').click())
     expect(await change('tie_rod_outer_z').inputValue()).toBe('5')
     expect(await chosen()).toEqual(before)
     expect(await page.getByTestId('designs').innerText()).toContain('1')
@@ -137,8 +131,7 @@ describe('work on a design', () => {
 
   test('goes with a link', async () => {
     await open('macpherson')
-    await slide(page, '[data-testid=variable-tie_rod_outer_z] [data-testid=change]', 5)
-    await settled(page)
+    await settles(page, () => slide(page, '[data-testid=variable-tie_rod_outer_z] [data-testid=change]', 5))
     await page.getByTestId('export').click()
     await page.getByTestId('export-link').click()
     await page.waitForFunction(() => location.hash.startsWith('#state='))
@@ -178,9 +171,10 @@ describe('work on a design', () => {
     expect(await banner.innerText()).toContain('This motion is incomplete.')
     await page.getByTestId('tab-variables').click()
     const change = page.getByTestId('variable-B').getByTestId('change-value')
-    await change.fill('-10')
-    await change.press('Enter')
-    await settled(page)
+    await settles(page, async () => {
+      await change.fill('-10')
+      await change.press('Enter')
+    })
     expect(await banner.innerText()).toMatch(/^Only a part of this motion is shown.*up to 0\.4\d* s/)
     // The rocker turns to 69.6 deg after the time at which the original locks.
     const card = () => page.getByTestId('card-r').innerText()
@@ -220,8 +214,7 @@ describe('work on a design', () => {
       void dialog.accept()
     })
     await page.locator('h1').click()
-    await slide(page, '[data-testid=variable-tie_rod_outer_z] [data-testid=change]', 5)
-    await settled(page)
+    await settles(page, () => slide(page, '[data-testid=variable-tie_rod_outer_z] [data-testid=change]', 5))
     await page.evaluate(() => {
       Storage.prototype.setItem = () => {
         throw new Error('the storage is full')
@@ -252,9 +245,10 @@ describe('work on a design', () => {
     const value = (name: string) => page.getByTestId(`card-${name}`).getByTestId('card-value').innerText()
     expect(await value('largest_camber')).toBe('1.99')
     expect(await value('bump_steer')).toBe('0.02832')
-    await change('tie_rod_outer_z').fill('1')
-    await change('tie_rod_outer_z').press('Enter')
-    await settled(page)
+    await settles(page, async () => {
+      await change('tie_rod_outer_z').fill('1')
+      await change('tie_rod_outer_z').press('Enter')
+    })
     expect(await value('bump_steer')).not.toBe('0.02832')
     const changed = await toml()
     expect(changed).not.toContain('[cases')
@@ -283,8 +277,7 @@ describe('work on a design', () => {
     await page.getByTestId('derived-motion').waitFor({ state: 'detached' })
     await ready(page)
     expect(await over('plot-0')).toBe('over time')
-    await page.getByTestId('reset-all').click()
-    await settled(page)
+    await settles(page, () => page.getByTestId('reset-all').click())
     await page.reload()
     await ready(page)
     expect(await over('plot-0')).toBe('over time')

@@ -35,3 +35,18 @@ export async function settled(page: Page): Promise<void> {
   await frames(page, 3)
   await page.waitForFunction(() => document.getElementById('page')!.dataset.settled === 'yes')
 }
+
+/** Does what changes the design, and waits until text and sensitivities have followed it, however soon that is. */
+export async function settles(page: Page, act: () => Promise<unknown>): Promise<void> {
+  const seen = await page.evaluateHandle(() => {
+    const { dataset } = document.getElementById('page')!
+    const seen = { change: false }
+    const look = () => {
+      seen.change ||= dataset.settled === 'no'
+    }
+    new MutationObserver(look).observe(document.getElementById('page')!, { attributeFilter: ['data-settled'] })
+    return seen
+  })
+  await act()
+  await page.waitForFunction((seen) => seen.change && document.getElementById('page')!.dataset.settled === 'yes', seen)
+}
