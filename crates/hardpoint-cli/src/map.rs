@@ -1,6 +1,7 @@
 //! `hardpoint map`.
 
 use std::io::Write;
+use std::num::NonZero;
 use std::path::Path;
 
 use hardpoint::joint::Quantity;
@@ -60,11 +61,11 @@ impl Format {
         }
     }
 
-    /// Minimum number of intervals of each range. A spline of Adams has at least four points.
-    fn intervals(self) -> usize {
+    /// Minimum number of intervals of each range, if there is one. A spline of Adams has at least four points.
+    fn intervals(self) -> Option<NonZero<usize>> {
         match self {
-            Self::Csv | Self::Json | Self::Modelica => 1,
-            Self::Adams => 4,
+            Self::Csv | Self::Json | Self::Modelica => None,
+            Self::Adams => NonZero::new(4),
         }
     }
 }
@@ -108,9 +109,9 @@ fn map_of(session: &Session, options: &args::Map) -> Result<Outcome, Outcome> {
             .map_err(|why| session.misunderstood(&format!("`--error {text}`: {why}")))
     };
     let errors = options.error.iter().map(error).collect::<Result<Vec<_>, _>>()?.concat();
-    let overrides = Overrides { over, of: options.of.clone(), errors, interpolation };
-    let mut request = Request::of(&file.model, overrides).map_err(refused)?;
-    request.intervals = format.intervals();
+    let overrides =
+        Overrides { over, of: options.of.clone(), errors, interpolation, intervals: format.intervals() };
+    let request = Request::of(&file.model, overrides).map_err(refused)?;
     // The mechanism can be driven, or the reasons are given.
     session.plan(&file, options.common.formulation())?;
     let found = {

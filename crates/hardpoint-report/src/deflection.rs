@@ -76,9 +76,7 @@ pub(crate) fn ends_of_curves(file: &ModelFile) -> Vec<Diagnostic> {
         let Some(CurveRange { deflections, steps }) = range else { continue };
         let quantity = curve.quantity(model);
         let shown = |deflection: f64| {
-            // A compression is a negative extension.
-            let deflection = if curve.key == "compression" { -deflection } else { deflection };
-            with_unit(units.from_si(quantity, deflection), symbol(units, quantity))
+            with_unit(units.from_si(quantity, curve.as_written(deflection)), symbol(units, quantity))
         };
         for k in [0, 1] {
             let (end, is_constant) = curve.table.end(k == 1);

@@ -257,11 +257,9 @@ fn case_laws(
         if is_force {
             law = law::of_force(r, &subject, value).and(law);
         }
-        match driven.get(&driver) {
-            Some(quantity) => law::check_units(r, *quantity),
-            None => r.law_units.clear(),
-        }
-        let quantity = driven.get(&driver).copied().unwrap_or(Quantity::Number);
+        let quantity = driven.get(&driver).copied();
+        law::check_units(r, quantity);
+        let quantity = quantity.unwrap_or(Quantity::Number);
         for (parameter, expression) in r.law_formulas.drain(..) {
             let of = FormulaOf::CaseLaw(case.to_owned(), driver.clone(), parameter);
             draft.formulas.push(FormulaDraft { of, expression });

@@ -3,6 +3,7 @@
 use hardpoint::draft::{
     DirectionDraft, FieldDraft, FieldKind, MeasureField, NumberDraft, RayDraft, TablePointDraft,
 };
+use hardpoint::joint::Quantity;
 use hardpoint::law::Law;
 use hardpoint::model::{
     Axes, CoupledStiffness, ElasticDirection, ElementUnit, JacobianValue, OrientationAngle, ReactionPart,
@@ -192,9 +193,13 @@ pub(super) fn own_field(
             r.given(fields, key, |r, f| element_number(r, fields, f, unit)).map(FieldDraft::Number)
         }
         FieldKind::Law => r.given(fields, key, |r, f| factor_law(r, fields, f)).map(FieldDraft::Law),
-        FieldKind::Table => r.given(fields, key, |r, f| force_table(r, fields, f)).map(FieldDraft::Table),
+        FieldKind::Table => {
+            let (files, of) = ((&FORCE_FILE, &data::FORCE), (Quantity::Length, ElementUnit::Force));
+            r.given(fields, key, |r, f| force_table(r, fields, f, files, of)).map(FieldDraft::Table)
+        }
         FieldKind::MomentTable => {
-            r.given(fields, key, |r, f| moment_table(r, fields, f)).map(FieldDraft::Table)
+            let (files, of) = ((&MOMENT_FILE, &data::MOMENT), (Quantity::Angle, ElementUnit::Moment));
+            r.given(fields, key, |r, f| force_table(r, fields, f, files, of)).map(FieldDraft::Table)
         }
         FieldKind::Matrix => r.given(fields, key, |r, f| matrix(r, fields, f)).map(FieldDraft::Matrix),
         FieldKind::Mesh => {
@@ -242,23 +247,19 @@ fn ray(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>, place: &mut EntryP
     }
 }
 
-/// Force over deflection, given here or in a file.
-fn force_table(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>) -> Option<Vec<TablePointDraft>> {
-    let (points, _) =
-        data::points_given(r, fields, f, (&FORCE_FILE, &data::FORCE), |r, pair, subject, expected| {
-            table_point(r, pair, subject, expected, ElementUnit::Force)
-        })?;
-    let in_si = |p: TablePointDraft| TablePointDraft { deflection: r.units.length.metres(p.deflection), ..p };
-    Some(points.into_iter().map(in_si).collect())
-}
-
-/// Moment over angle, given here or in a file.
-fn moment_table(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>) -> Option<Vec<TablePointDraft>> {
-    let (points, _) =
-        data::points_given(r, fields, f, (&MOMENT_FILE, &data::MOMENT), |r, pair, subject, expected| {
-            table_point(r, pair, subject, expected, ElementUnit::Moment)
-        })?;
-    let in_si = |p: TablePointDraft| TablePointDraft { deflection: r.units.angle.radians(p.deflection), ..p };
+/// Force or moment over a deflection, given here or in a file.
+fn force_table(
+    r: &mut Reader<'_>,
+    fields: &Fields<'_>,
+    f: Field<'_>,
+    files: (&'static Table, &data::Curve),
+    (deflection, force): (Quantity, ElementUnit),
+) -> Option<Vec<TablePointDraft>> {
+    let (points, _) = data::points_given(r, fields, f, files, |r, pair, subject, expected| {
+        table_point(r, pair, subject, expected, force)
+    })?;
+    let in_si =
+        |p: TablePointDraft| TablePointDraft { deflection: r.units.to_si(deflection, p.deflection), ..p };
     Some(points.into_iter().map(in_si).collect())
 }
 

@@ -169,10 +169,7 @@ pub(super) fn drivers(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
         let drives = drives.unwrap_or(DrivenDraft::Unread);
         // The core reports an unknown joint or coordinate.
         let quantity = drives.quantity(&raw.draft.measures, |joint| raw.type_of(joint));
-        match quantity {
-            Some(quantity) => law::check_units(r, quantity),
-            None => r.law_units.clear(),
-        }
+        law::check_units(r, quantity);
         let quantity = quantity.unwrap_or(Quantity::Number);
         let law = law.unwrap_or_else(|| Law::constant(0.0)).scaled(r.units.to_si(quantity, 1.0));
         raw.push(r, Section::Drivers, place);

@@ -228,9 +228,12 @@ fn law_text(r: &mut Reader<'_>, of: &str, value: &Value<'_>, parameters: &[(&str
     }
 }
 
-/// HP0112: units in the tables of the law that was read last that are not those of its values.
-pub(super) fn check_units(r: &mut Reader<'_>, quantity: Quantity) {
-    for (at, [name, unit]) in std::mem::take(&mut r.law_units) {
+/// HP0112: units in the tables of the law that was read last that are not those of its values, if it is known what they
+/// are.
+pub(super) fn check_units(r: &mut Reader<'_>, quantity: Option<Quantity>) {
+    let units = std::mem::take(&mut r.law_units);
+    let Some(quantity) = quantity else { return };
+    for (at, [name, unit]) in units {
         let of = ("the law", quantity.into());
         if let Some(error) = data::other_unit([&name, &unit], "the table", r.units, of) {
             r.data_error(at, error);
@@ -241,7 +244,7 @@ pub(super) fn check_units(r: &mut Reader<'_>, quantity: Quantity) {
 /// Makes the law that was read last one of a force, which is the same in every design: `None` if it is not. HP0230: a
 /// parameter in it that the design changes.
 pub(super) fn of_force(r: &mut Reader<'_>, subject: &Subject, value: &Value<'_>) -> Option<()> {
-    check_units(r, Quantity::Number);
+    check_units(r, Some(Quantity::Number));
     let mut is_same = Some(());
     for (_, expression) in std::mem::take(&mut r.law_formulas) {
         let Err(why) = r.nominal.constant(&expression) else { continue };

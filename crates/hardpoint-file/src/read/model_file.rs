@@ -261,17 +261,11 @@ impl ModelFile {
     /// HP0257: warnings about curves of elastic joints and bushings whose force falls with the deflection somewhere,
     /// or does not change at zero deflection.
     pub(super) fn falling_curves(&self) -> Vec<Diagnostic> {
-        let model = &self.model;
-        let masses = model.elements.iter().filter(|e| e.kind.has_mass()).count();
         let of = |curve: ForceCurve<'_>| {
-            let name = shown(&model.elements[curve.element.0].name);
-            let (falling, key) = (model.falling_intervals(&curve), curve.key);
-            let [first, ..] = falling[..] else { return None };
-            let (unit, per_si) = self.units.of(curve.quantity(model));
-            let [from, to] = first.map(|e| hardpoint_table::figures::with_unit(e * per_si, unit));
-            let message = format!("`{key}` of `{name}` falls with the deflection from {from} to {to}");
-            let place = Some((Section::Forces, curve.element.0 - masses));
-            let mut d = self.diagnostic(Severity::Warning, "HP0257", message, place);
+            let falling = self.model.falling_intervals(&curve);
+            let mut d = self.curve_warning("HP0257", &curve, *falling.first()?, |[from, to]| {
+                format!("falls with the deflection from {from} to {to}")
+            });
             if falling.len() > 1 {
                 d = d.note(format!("and in {} further intervals", falling.len() - 1));
             }
@@ -282,31 +276,41 @@ impl ModelFile {
                 .help("let the force grow from point to point, unless this is meant"),
             )
         };
-        model.force_curves().into_iter().filter_map(of).collect()
+        self.model.force_curves().into_iter().filter_map(of).collect()
     }
 
     /// HP0258: warnings about curves with adjacent points whose forces are equal, but may differ in other designs.
     pub(super) fn kinked_curves(&self) -> Vec<Diagnostic> {
-        let model = &self.model;
-        let masses = model.elements.iter().filter(|e| e.kind.has_mass()).count();
         let of = |curve: ForceCurve<'_>| {
-            let (name, key) = (shown(&model.elements[curve.element.0].name), curve.key);
-            let [first, ..] = model.kinked_intervals(&curve)[..] else { return None };
-            let (unit, per_si) = self.units.of(curve.quantity(model));
-            // A compression is a negative extension.
-            let sign = if key == "compression" { -1.0 } else { 1.0 };
-            let mut ends = first.map(|e| sign * e * per_si);
-            ends.sort_by(f64::total_cmp);
-            let [from, to] = ends.map(|e| hardpoint_table::figures::with_unit(e, unit));
-            let message = format!("`{key}` of `{name}` has the same force at {from} and {to}");
-            let place = Some((Section::Forces, curve.element.0 - masses));
-            let d = self.diagnostic(Severity::Warning, "HP0258", message, place);
+            let interval = *self.model.kinked_intervals(&curve).first()?;
+            let d = self.curve_warning("HP0258", &curve, interval, |[from, to]| {
+                format!("has the same force at {from} and {to}")
+            });
             Some(
                 d.note("the slope of the curve there has a kink over these forces, and derivatives by them are those of one side")
                     .help("give the two points different forces, or the same expression"),
             )
         };
-        model.force_curves().into_iter().filter_map(of).collect()
+        self.model.force_curves().into_iter().filter_map(of).collect()
+    }
+
+    /// Warning about a curve of a force, of which something is true between two deflections.
+    fn curve_warning(
+        &self,
+        code: &'static str,
+        curve: &ForceCurve<'_>,
+        interval: [f64; 2],
+        what: impl Fn([String; 2]) -> String,
+    ) -> Diagnostic {
+        let model = &self.model;
+        let masses = model.elements.iter().filter(|e| e.kind.has_mass()).count();
+        let name = shown(&model.elements[curve.element.0].name);
+        let (unit, per_si) = self.units.of(curve.quantity(model));
+        let mut ends = interval.map(|e| curve.as_written(e) * per_si);
+        ends.sort_by(f64::total_cmp);
+        let what = what(ends.map(|e| hardpoint_table::figures::with_unit(e, unit)));
+        let place = Some((Section::Forces, curve.element.0 - masses));
+        self.diagnostic(Severity::Warning, code, format!("`{}` of `{name}` {what}", curve.key), place)
     }
 
     /// Renders a diagnostic of this file for a terminal; with `color`, with ANSI escapes.

@@ -37,6 +37,7 @@ fn request(
         of: of.iter().map(|(name, _)| (*name).to_owned()).collect(),
         errors: of.iter().map(|(name, error)| (ErrorScope::Output((*name).to_owned()), *error)).collect(),
         interpolation,
+        intervals: None,
     };
     Request::of(model, overrides).unwrap_or_else(|e| panic!("{e}"))
 }
@@ -370,7 +371,7 @@ fn invalid_requests_name_the_fault_and_the_remedy() {
     let of = |over: &[(&str, [f64; 2])], of: &[&str], errors: Vec<(ErrorScope, f64)>| {
         let over = over.iter().map(|(name, range)| ((*name).to_owned(), *range)).collect();
         let of = of.iter().map(|name| (*name).to_owned()).collect();
-        let overrides = Overrides { over, of, errors, interpolation: Interpolation::Hermite };
+        let overrides = Overrides { over, of, errors, ..Overrides::default() };
         Request::of(&model, overrides).unwrap_err().to_string()
     };
     let error = || vec![(ErrorScope::Output("pin.x".into()), 1e-6)];

@@ -75,6 +75,7 @@ fn a_table_over_a_reversed_driver_has_the_values_of_its_laws() {
             of: vec!["place".to_owned()],
             errors: vec![(ErrorScope::Output("place".to_owned()), 1e-6)],
             interpolation,
+            intervals: None,
         };
         let request = Request::of(&model, overrides).unwrap();
         let table = solve(&model, Formulation::Relative, &request, &mut |_, _| true)

@@ -1,5 +1,7 @@
 //! Request for a table.
 
+use std::num::NonZero;
+
 use hardpoint::measure::{clearances_of, outputs};
 use hardpoint::model::{Dimension, DriverId, Model, OutputSource};
 
@@ -58,6 +60,8 @@ pub struct Overrides {
     pub errors: Vec<(ErrorScope, f64)>,
     /// Interpolation.
     pub interpolation: Interpolation,
+    /// Minimum number of intervals of each range. Default: 1.
+    pub intervals: Option<NonZero<usize>>,
 }
 
 /// Outputs for which a permitted error is given.
@@ -143,7 +147,7 @@ impl Request {
     /// A [`RequestError`] if a name is unknown, a range is empty, there are no or too many drivers, or an output has no
     /// permitted error.
     pub fn of(model: &Model, overrides: Overrides) -> Result<Self, RequestError> {
-        let Overrides { over, of, errors, interpolation } = overrides;
+        let Overrides { over, of, errors, interpolation, intervals } = overrides;
         if over.is_empty() || over.len() > MOST_DRIVERS {
             return Err(RequestError::invalid(
                 format!("a map over {} drivers", over.len()),
@@ -203,6 +207,6 @@ impl Request {
             }
             outputs.push(MappedOutput { name, output, dimension, error });
         }
-        Ok(Self { axes, outputs, interpolation, intervals: 1 })
+        Ok(Self { axes, outputs, interpolation, intervals: intervals.map_or(1, NonZero::get) })
     }
 }

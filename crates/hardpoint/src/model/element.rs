@@ -602,6 +602,11 @@ impl ForceCurve<'_> {
         };
         if is_angle { Quantity::Angle } else { Quantity::Length }
     }
+
+    /// A deflection as model files have it: a compression is a negative extension.
+    pub fn as_written(&self, deflection: f64) -> f64 {
+        if self.key == "compression" { -deflection } else { deflection }
+    }
 }
 
 /// Elastic law of one direction: `s(e) = k e + k_3 e^3 + f C(e) - f_0`.
@@ -958,10 +963,7 @@ impl Model {
         let (cubic, factor) = (of.cubic.map_or(0.0, number), of.scale.map_or(1.0, number));
         let force = |[e, c]: [f64; 2]| stiffness * e + cubic * e.powi(3) + factor * c;
         let mut falling: Vec<[f64; 2]> = Vec::new();
-        for (start, end) in curve.table.points().zip(curve.table.points().skip(1)) {
-            if force(end) >= force(start) {
-                continue;
-            }
+        for [start, end] in curve.table.chords().filter(|[start, end]| force(*end) < force(*start)) {
             let [from, to] = [start[0], end[0]];
             match falling.last_mut() {
                 Some(last) if last[1] == from => last[1] = to,
@@ -976,12 +978,10 @@ impl Model {
     pub fn kinked_intervals(&self, curve: &ForceCurve<'_>) -> Vec<[f64; 2]> {
         let expression =
             |n: &NumberId| self.formulas.iter().find(|f| f.of == Target::Number(*n)).map(Formula::text);
-        let chords =
-            curve.table.points().zip(curve.table.points().skip(1)).zip(curve.table.numbers().windows(2));
         let is_kinked = |([from, to], numbers): &([[f64; 2]; 2], &[NumberId])| {
             from[1] == to[1] && expression(&numbers[0]) != expression(&numbers[1])
         };
-        let chords = chords.map(|((from, to), numbers)| ([from, to], numbers)).filter(is_kinked);
+        let chords = curve.table.chords().zip(curve.table.numbers().windows(2)).filter(is_kinked);
         chords.map(|([from, to], _)| [from[0], to[0]]).collect()
     }
 

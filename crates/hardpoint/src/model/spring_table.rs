@@ -50,6 +50,11 @@ impl SpringTable {
         self.deflections.iter().zip(&self.forces).map(|(x, y)| [*x, *y])
     }
 
+    /// Adjacent points in the nominal design.
+    pub(crate) fn chords(&self) -> impl Iterator<Item = [[f64; 2]; 2]> {
+        self.points().zip(self.points().skip(1)).map(|(from, to)| [from, to])
+    }
+
     /// Numbers of the forces of the points; empty if the forces are the same in every design.
     pub fn numbers(&self) -> &[NumberId] {
         &self.numbers
