@@ -22,9 +22,12 @@ const files = readdirSync(MODELS)
   .filter((file) => file.endsWith('.toml'))
   .sort()
 
+const binary = inflateRawSync(readFileSync(join(ROOT, 'crates/hardpoint-report/page/engine.deflate')))
+/** Compiled once; each test has an instance of its own. */
+const compiled = WebAssembly.compile(new Uint8Array(binary))
+
 async function engine(onProgress: (progress: ProgressReply) => void = () => {}): Promise<Ask> {
-  const binary = inflateRawSync(readFileSync(join(ROOT, 'crates/hardpoint-report/page/engine.deflate')))
-  return instantiate(await WebAssembly.compile(new Uint8Array(binary)), onProgress)
+  return instantiate(await compiled, onProgress)
 }
 
 /** The native engine's answers to the same requests. */
@@ -65,8 +68,7 @@ function near(found: readonly (number | null)[], wanted: readonly (number | null
 }
 
 test('the page has an engine that asks for nothing but to tell', async () => {
-  const binary = inflateRawSync(readFileSync(join(ROOT, 'crates/hardpoint-report/page/engine.deflate')))
-  const imports = WebAssembly.Module.imports(await WebAssembly.compile(new Uint8Array(binary)))
+  const imports = WebAssembly.Module.imports(await compiled)
   expect(imports.map(({ module, name }) => `${module}.${name}`).sort()).toEqual(['page.tell'])
 })
 

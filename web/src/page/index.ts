@@ -2,6 +2,7 @@ import { el, prose, setText } from '../dom'
 import { figure } from '../format'
 import { heatMap } from '../influence/heatmap'
 import { rankingTable } from '../influence/table'
+import type { Graphics } from '../scene/graphics'
 import type { Pose, View } from '../scene/view'
 import { forcePaths } from '../loads/polar'
 import { driverMap } from '../maps/map'
@@ -42,6 +43,8 @@ export interface PageMemory {
 export interface Tools {
   /** Choices of the page before. */
   memory?: PageMemory
+  /** What the view of the page before was drawn with. */
+  graphics?: Graphics
   /** Element in the bar. */
   bar?: HTMLElement
   /** More that can be exported. */
@@ -76,7 +79,7 @@ export function page(root: HTMLElement, state: State, tools: Tools = {}): PagePa
     // The focus goes to the button at the end.
     keys.scrollTo(0, 0)
   }
-  const scene = stage(state, tools.memory?.pose)
+  const scene = stage(state, tools.memory?.pose, tools.graphics)
   const curves = hasQuantities ? new Curves(state, tools.figure, tools.memory?.figures) : undefined
   const all = tableTabs(state, tools.limits)
   const tables = tabs('Variables, tables and checks', all)

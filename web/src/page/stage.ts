@@ -1,6 +1,7 @@
 import { el, setText } from '../dom'
 import type { Look } from '../scene/camera'
 import { openingStep } from '../scene/opening'
+import type { Graphics } from '../scene/graphics'
 import { hasWebGL, type Pose, View } from '../scene/view'
 import type { State } from '../state'
 import { Inspector } from './inspector'
@@ -20,13 +21,13 @@ interface Stage {
 }
 
 /** The mechanism in 3D with its standard views, or a plain message where there is no WebGL. */
-export function stage(state: State, pose?: Pose): Stage {
-  if (!hasWebGL()) {
+export function stage(state: State, pose?: Pose, graphics?: Graphics): Stage {
+  if (!graphics && !hasWebGL()) {
     const message = 'The 3D view needs WebGL, which this browser does not provide. Curves and tables are complete.'
     const element = el('div', { class: 'view', 'data-testid': 'no-webgl' }, el('p', { class: 'message' }, message))
     return { element, docked: [] }
   }
-  const view = new View(state)
+  const view = new View(state, graphics)
   if (state.step === 0) state.goToStep(openingStep(view.original))
   const buttons = view.looks.map(({ name, title }, index) =>
     el('button', { type: 'button', title, 'data-testid': `look-${name}`, onclick: () => look(index) }, name),

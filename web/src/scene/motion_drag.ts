@@ -36,6 +36,7 @@ export class MotionDrag {
     private readonly state: State,
     private readonly scene: Scene,
   ) {
+    const signal = state.ended
     // Before the controls, which would turn the view.
     canvas.addEventListener(
       'pointerdown',
@@ -47,9 +48,9 @@ export class MotionDrag {
         controls.enabled = false
         canvas.setPointerCapture(event.pointerId)
       },
-      { capture: true },
+      { capture: true, signal },
     )
-    canvas.addEventListener('pointermove', ({ offsetX: x, offsetY: y, pointerId }) => {
+    const drag = ({ offsetX: x, offsetY: y, pointerId }: PointerEvent) => {
       const from = this.#from
       if (!from || !this.#path || pointerId !== from.id) return
       this.#moving ||= Math.hypot(x - from.x, y - from.y) > STILL
@@ -57,7 +58,8 @@ export class MotionDrag {
       state.pause()
       canvas.style.cursor = 'grabbing'
       state.goToStep(nearest(this.#path, { x, y }, state.step))
-    })
+    }
+    canvas.addEventListener('pointermove', drag, { signal })
     const end = ({ pointerId }: PointerEvent) => {
       if (pointerId !== this.#from?.id) return
       this.#path = this.#from = undefined
@@ -65,8 +67,8 @@ export class MotionDrag {
       controls.enabled = true
       canvas.style.cursor = ''
     }
-    canvas.addEventListener('pointerup', end)
-    canvas.addEventListener('pointercancel', end)
+    canvas.addEventListener('pointerup', end, { signal })
+    canvas.addEventListener('pointercancel', end, { signal })
   }
 
   /** Positions on the screen of the point of a body under the pointer, step by step, if it moves. */

@@ -25,17 +25,19 @@ export class Pointer {
     private readonly roots: () => Object3D[],
     private readonly hover: () => void,
     choose: (part: Part | undefined) => void,
+    signal: AbortSignal,
   ) {
     this.#ray.layers.enableAll()
     this.#ray.params.Line2 = { threshold: REACH }
-    canvas.addEventListener('pointermove', (event) => this.#move(event))
-    canvas.addEventListener('pointerleave', () => this.#show(undefined))
-    canvas.addEventListener('pointerdown', ({ offsetX: x, offsetY: y }) => (this.#down = { x, y }))
-    canvas.addEventListener('pointerup', ({ offsetX: x, offsetY: y, button }) => {
+    canvas.addEventListener('pointermove', (event) => this.#move(event), { signal })
+    canvas.addEventListener('pointerleave', () => this.#show(undefined), { signal })
+    canvas.addEventListener('pointerdown', ({ offsetX: x, offsetY: y }) => (this.#down = { x, y }), { signal })
+    const release = ({ offsetX: x, offsetY: y, button }: PointerEvent) => {
       const down = this.#down
       this.#down = undefined
       if (button === 0 && down && Math.hypot(x - down.x, y - down.y) <= STILL) choose(this.hit(x, y)?.part)
-    })
+    }
+    canvas.addEventListener('pointerup', release, { signal })
   }
 
   #move(event: PointerEvent): void {

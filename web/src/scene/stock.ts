@@ -1,7 +1,4 @@
-/** Object with memory on the graphics card. */
-interface Disposable {
-  dispose(): void
-}
+import type { Disposable } from './graphics'
 
 /**
  * Geometries, materials and textures by keys that name all that they depend on. A changed design takes what it has in

@@ -1,4 +1,4 @@
-import { PCFShadowMap, type Ray, Raycaster, Scene, Vector2, Vector3, WebGLRenderer } from 'three'
+import { PCFShadowMap, type Ray, Raycaster, Scene, Vector2, Vector3 } from 'three'
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
 import { valueAt } from '../curve'
 import { el, onSchemeChange, setText } from '../dom'
@@ -24,6 +24,7 @@ import { changeText, shownChange } from './draw/design_velocity'
 import { forceText } from './draw/load'
 import { type Part, samePart } from './drawable'
 import { Floor } from './floor'
+import { Graphics } from './graphics'
 import { clearanceLabels, distanceLabels, hardpointLabels, LabelLayer, partLabels } from './label_layer'
 import { Mechanism } from './mechanism'
 import { MotionDrag } from './motion_drag'
@@ -69,7 +70,7 @@ export class View {
   camera: Camera
   /** The design as loaded. */
   readonly original: Mechanism
-  #renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true })
+  readonly #renderer
   #outlines = new Outlines()
   #controls: OrbitControls
   #pointer: Pointer
@@ -110,11 +111,14 @@ export class View {
   #pending = false
   /** Size of the element, px, from its observer; reading it from the element would force a layout in a frame. */
   #extent = { width: 0, height: 0 }
-  /** Parts that are no longer drawn. They are removed after the next picture, which then finds its shaders compiled. */
-  #discarded: Assembly[] = []
   #onDrawn: (() => void)[] = []
 
-  constructor(private readonly state: State) {
+  /** `graphics` is that of a view that has ended. */
+  constructor(
+    private readonly state: State,
+    private readonly graphics = new Graphics(),
+  ) {
+    this.#renderer = graphics.renderer
     this.original = new Mechanism(state.report)
     this.looks = looksOf(this.original)
     const along = axisLooksOf(this.original, this.looks)
@@ -147,6 +151,7 @@ export class View {
       () => [...this.#marks.groups, ...this.#matter.groups],
       () => (this.#emphasise(), this.#draw()),
       (selected) => state.choose({ selected }),
+      state.ended,
     )
     new MotionDrag(this.canvas, this.#controls, state, {
       find: (x, y) => this.#pointer.hit(x, y),
@@ -188,11 +193,16 @@ export class View {
       this.#extent = { width: Math.round(contentRect.width), height: Math.round(contentRect.height) }
       this.#resize()
     }).observe(this.element)
-    this.canvas.addEventListener('webglcontextlost', () => (this.#lost.hidden = false))
-    this.canvas.addEventListener('webglcontextrestored', () => {
-      this.#lost.hidden = true
-      this.#move()
-    })
+    const signal = state.ended
+    this.canvas.addEventListener('webglcontextlost', () => (this.#lost.hidden = false), { signal })
+    this.canvas.addEventListener(
+      'webglcontextrestored',
+      () => {
+        this.#lost.hidden = true
+        this.#move()
+      },
+      { signal },
+    )
   }
 
   /** The design drawn solid; its `former` is the one drawn dashed. */
@@ -236,13 +246,11 @@ export class View {
     return ray.ray
   }
 
-  /** Frees all graphics memory before the page is rebuilt. */
-  dispose(): void {
-    this.#discarded.push(this.#matter, this.#marks)
-    for (const one of this.#discarded.splice(0)) one.dispose()
+  /** Ends the view before the page is rebuilt; the next view draws with what is returned. */
+  end(): Graphics {
     this.#controls.dispose()
-    this.#renderer.dispose()
-    this.#renderer.forceContextLoss()
+    this.graphics.free(this.#matter, this.#marks, this.#floor, this.#outlines)
+    return this.graphics
   }
 
   /** Position of the camera, if the reader turned or moved it; and the standard view. */
@@ -568,7 +576,7 @@ export class View {
     }
     layers.set(0)
     this.#overview?.draw(this.#renderer, this.scene, width, height)
-    for (const one of this.#discarded.splice(0)) one.dispose()
+    this.graphics.drawn()
     this.#triad.update(this.camera)
     this.#label()
     for (const listener of this.#onDrawn) listener()
@@ -576,7 +584,7 @@ export class View {
 
   #discard(one: Assembly): void {
     for (const group of one.groups) group.removeFromParent()
-    this.#discarded.push(one)
+    this.graphics.free(one)
   }
 
   #label(): void {

@@ -906,7 +906,7 @@ export class Studio {
     this.#recalled = undefined
     this.#fresh = false
     before.end()
-    view?.dispose()
+    const graphics = view?.end()
     keepMeshes(before.report, report)
     const state = new State(report)
     state.recorded = this.#recorded
@@ -917,6 +917,7 @@ export class Studio {
     this.made = page(this.root, state, {
       bar: this.#tools,
       memory: fresh ? { ...recalled.page, figures: [] } : recalled.page,
+      graphics,
       exports: this.exports,
       grips: () => this.grips(),
       leave: () => this.leave(),
