@@ -21,10 +21,12 @@ Examples:
   hardpoint run models/macpherson.toml -o results/macpherson
   hardpoint verify models/macpherson.toml --sweep
   hardpoint clearance models/studies/knee.toml
-  hardpoint whatif models/macpherson.toml --set tie_rod_outer.z=+2mm --measure toe
+  hardpoint whatif models/macpherson.toml --set tie_rod_outer.z=+2mm \\
+      --measure toe
   hardpoint optimize models/four_bar_inverse.toml --save found.toml
   hardpoint tolerance models/studies/strut_tolerances.toml -o results/strut
-  hardpoint calibrate models/studies/strut_calibrate.toml models/studies/strut_measured.csv
+  hardpoint calibrate models/studies/strut_calibrate.toml \\
+      models/studies/strut_measured.csv
   hardpoint sweep models/studies/strut_sweep.toml -o results/sweep
   hardpoint studio models/macpherson.toml
   hardpoint site public
@@ -199,8 +201,10 @@ are in one unit, and the axes are one of
 Examples:
   hardpoint new --list
   hardpoint new front --template double-wishbone
-  hardpoint new front --template macpherson --hardpoints points.csv --units mm --axes sae
-  hardpoint new rear -t five-link --hardpoints points.xlsx --units in --axes \"x back, y right, z up\"";
+  hardpoint new front --template macpherson --hardpoints points.csv \\
+      --units mm --axes sae
+  hardpoint new rear -t five-link --hardpoints points.xlsx --units in \\
+      --axes \"x back, y right, z up\"";
 
 /// Options of `new`.
 #[derive(Args, Debug)]
@@ -249,7 +253,8 @@ Files in the folder (without `-o`, nothing is written):
 Examples:
   hardpoint synthesize models/tasks/tailgate.toml
   hardpoint synthesize models/tasks/tailgate.toml -o results/tailgate
-  hardpoint synthesize models/tasks/tailgate.toml --answers 3 --json | jq '.answers[0]'";
+  hardpoint synthesize models/tasks/tailgate.toml --answers 3 \\
+      --json | jq '.answers[0]'";
 
 /// Options of `synthesize`.
 #[derive(Args, Debug)]
@@ -425,7 +430,8 @@ known.
 Examples:
   hardpoint clearance models/studies/knee.toml
   hardpoint clearance models/studies/knee.toml -o results/knee
-  hardpoint clearance models/studies/knee.toml --json | jq '.pairs[] | [.shapes, .least]'";
+  hardpoint clearance models/studies/knee.toml \\
+      --json | jq '.pairs[] | [.shapes, .least]'";
 
 /// `hardpoint clearance`.
 #[derive(Args, Debug)]
@@ -455,9 +461,12 @@ another one is given: `0.5` or `0.02in`.
 The exit code is 1 if the permitted error is not reached.
 
 Examples:
-  hardpoint envelope front.toml tyre -o wheel_house.stl
-  hardpoint envelope front.toml tyre --case ride_and_steer --error 0.5 --margin 15
-  hardpoint envelope front.toml lower_arm --relative-to knuckle";
+  hardpoint envelope models/wheel_clearance.toml tyre --error 3 \\
+      -o wheel_house.stl
+  hardpoint envelope models/wheel_clearance.toml tyre --case everywhere \\
+      --error 5 --margin 15
+  hardpoint envelope models/wheel_clearance.toml strut --error 2 \\
+      --relative-to knuckle";
 
 /// `hardpoint envelope`.
 #[derive(Args, Debug)]
@@ -494,8 +503,10 @@ CombiTable1Ds and CombiTable2Ds of Modelica, in SI, or .adm for SPLINE statement
 Adams. The last two are linear: their points are those of linear interpolation.
 
 Examples:
-  hardpoint map models/double_wishbone.toml --over spring_drive=-16..24 --of toe --error 0.001deg -o toe.csv
-  hardpoint map models/slider_crank.toml --over crank_drive=0..90deg --of stroke --error 1e-6m -o stroke.txt";
+  hardpoint map models/double_wishbone.toml --over spring_drive=-16..24 \\
+      --of toe --error 0.001deg -o toe.csv
+  hardpoint map models/slider_crank.toml --over crank_drive=0..90deg \\
+      --of stroke --error 1e-6m -o stroke.txt";
 
 /// `hardpoint map`.
 #[derive(Args, Debug)]
@@ -602,9 +613,12 @@ decimal commas (2,5mm) are read too. --design takes the changes of a design of t
 
 Examples:
   hardpoint whatif models/macpherson.toml --measure toe
-  hardpoint whatif models/macpherson.toml --set tie_rod_outer.z=+2mm --set lca_pivot.tilt_y=0.5deg
-  hardpoint whatif models/macpherson.toml --set tie_rod_inner.z=-3mm --measure toe --over wheel_travel -o results/higher_rack
-  hardpoint whatif models/macpherson.toml --set tie_rod_outer.z=+2mm --save strut_2.toml";
+  hardpoint whatif models/macpherson.toml --set tie_rod_outer.z=+2mm \\
+      --set lca_pivot.tilt_y=0.5deg
+  hardpoint whatif models/macpherson.toml --set tie_rod_inner.z=-3mm \\
+      --measure toe --over wheel_travel -o results/higher_rack
+  hardpoint whatif models/macpherson.toml --set tie_rod_outer.z=+2mm \\
+      --save strut_2.toml";
 
 /// `hardpoint whatif`.
 #[derive(Args, Debug, Default)]
@@ -651,7 +665,8 @@ With --output it writes into the folder:
 Examples:
   hardpoint compare models/macpherson.toml strut_2.toml
   hardpoint compare models/solid_axle.toml level_rod
-  hardpoint compare models/studies/strut_toe.toml found.toml --case bump --measure toe -o results/found";
+  hardpoint compare models/studies/strut_toe.toml found.toml --case bump \\
+      --measure toe -o results/found";
 
 /// `hardpoint compare`.
 #[derive(Args, Debug)]
@@ -685,10 +700,14 @@ With --output it writes into the folder:
 
 Examples:
   hardpoint optimize models/four_bar_inverse.toml
-  hardpoint optimize models/four_bar_inverse.toml --starts 100 --json | jq '.starts[].status'
-  hardpoint optimize models/synthesis/arc_five_points.toml --starts 20 --optimum 2 --save second.toml
-  hardpoint optimize models/synthesis/arc_five_points.toml --other-assemblies --both-senses
-  hardpoint optimize models/four_bar_inverse.toml -o results/found --save found.toml";
+  hardpoint optimize models/four_bar_inverse.toml --starts 100 \\
+      --json | jq '.starts[].status'
+  hardpoint optimize models/synthesis/arc_five_points.toml --starts 20 \\
+      --optimum 2 --save second.toml
+  hardpoint optimize models/synthesis/arc_five_points.toml --other-assemblies \\
+      --both-senses
+  hardpoint optimize models/four_bar_inverse.toml -o results/found \\
+      --save found.toml";
 
 /// `hardpoint optimize`.
 #[derive(Args, Debug, Default)]
@@ -739,7 +758,8 @@ Examples:
   hardpoint export models/double_wishbone.toml -o skeleton.dxf
   hardpoint export models/double_wishbone.toml -o corner.c --design
   hardpoint export models/double_wishbone.toml -o corner.fmu --coordinates
-  hardpoint export models/double_wishbone.toml -o front.sub --json | jq '.unsaid[]'
+  hardpoint export models/double_wishbone.toml -o front.sub \\
+      --json | jq '.unsaid[]'
   hardpoint export --list";
 
 /// `hardpoint export`.
@@ -784,7 +804,8 @@ that needs corrections by hand (HP0807, HP0808, HP03) is written, and ends with 
 Examples:
   hardpoint import four_bar.asmt -o four_bar.toml
   hardpoint import suspension.adm -o suspension.toml
-  hardpoint import robot.xml --format mjcf -o robot.toml --json | jq '.report.entries[]'
+  hardpoint import robot.xml --format mjcf -o robot.toml \\
+      --json | jq '.report.entries[]'
   hardpoint import --list";
 
 /// `hardpoint import`.
@@ -830,8 +851,10 @@ With --output it writes into the folder:
 
 Examples:
   hardpoint tolerance models/studies/strut_tolerances.toml
-  hardpoint tolerance models/studies/strut_tolerances.toml --samples 100000 -o results/strut
-  hardpoint tolerance models/studies/strut_tolerances.toml --case bump --json | jq '.metrics[].rss'";
+  hardpoint tolerance models/studies/strut_tolerances.toml --samples 100000 \\
+      -o results/strut
+  hardpoint tolerance models/studies/strut_tolerances.toml --case bump \\
+      --json | jq '.metrics[].rss'";
 
 const AFTER_TRADE_OFF: &str = "\
 `[optimize.goals]` of the model file has the goals, `[optimize.limits]` the conditions,
@@ -848,8 +871,10 @@ With --output it writes into the folder:
 
 Examples:
   hardpoint trade-off models/studies/wishbone_trade_off.toml
-  hardpoint trade-off models/studies/wishbone_trade_off.toml --points 60 --output out/front
-  hardpoint trade-off models/studies/wishbone_trade_off.toml --save chosen.toml --point 4";
+  hardpoint trade-off models/studies/wishbone_trade_off.toml --points 60 \\
+      --output out/front
+  hardpoint trade-off models/studies/wishbone_trade_off.toml \\
+      --save chosen.toml --point 4";
 
 /// `hardpoint trade-off`.
 #[derive(Args, Debug)]
@@ -931,11 +956,16 @@ With --output it writes into the folder:
   summary.json     the printed results
 
 Examples:
-  hardpoint calibrate models/studies/strut_calibrate.toml models/studies/strut_measured.csv -o results/strut
-  hardpoint calibrate models/studies/strut_calibrate.toml models/studies/strut_measured.csv --prior strut_top_x=0.5
-  hardpoint calibrate models/five_link.toml measured.csv --priors tolerances --offset toe --validate other.csv
-  hardpoint calibrate models/five_link.toml measured.csv --sigma toe=0.02 --sigma camber=0.02 --loss huber
-  hardpoint calibrate models/stewart.toml poses.csv --variable base_1_x --variable base_1_y --save as_built.toml";
+  hardpoint calibrate models/studies/strut_calibrate.toml \\
+      models/studies/strut_measured.csv -o results/strut
+  hardpoint calibrate models/studies/strut_calibrate.toml \\
+      models/studies/strut_measured.csv --prior strut_top_x=0.5
+  hardpoint calibrate models/five_link.toml measured.csv --priors tolerances \\
+      --offset toe --validate other.csv
+  hardpoint calibrate models/five_link.toml measured.csv --sigma toe=0.02 \\
+      --sigma camber=0.02 --loss huber
+  hardpoint calibrate models/stewart.toml poses.csv --variable base_1_x \\
+      --variable base_1_y --save as_built.toml";
 
 /// `hardpoint calibrate`.
 #[derive(Args, Debug)]
@@ -1006,9 +1036,12 @@ files are the same to the last byte.
 
 Examples:
   hardpoint sweep models/studies/strut_sweep.toml -o results/sweep
-  hardpoint sweep models/studies/strut_sweep.toml --method sobol-indices --samples 2000
-  hardpoint sweep models/macpherson.toml --range lca_front_z=-5..5 --method factorial --levels 11 --curves toe
-  hardpoint sweep models/studies/strut_sweep.toml --designs mine.csv --curves toe --format parquet -o results/mine";
+  hardpoint sweep models/studies/strut_sweep.toml --method sobol-indices \\
+      --samples 2000
+  hardpoint sweep models/macpherson.toml --range lca_front_z=-5..5 \\
+      --method factorial --levels 11 --curves toe
+  hardpoint sweep models/studies/strut_sweep.toml --designs mine.csv \\
+      --curves toe --format parquet -o results/mine";
 
 /// `hardpoint sweep`.
 #[derive(Args, Debug, Default)]
@@ -1065,7 +1098,8 @@ With --port and --token, pages find the server again after a restart.
 Examples:
   hardpoint studio models/macpherson.toml
   hardpoint studio
-  hardpoint studio models/macpherson.toml --no-browser --port 4711 --token my-own-long-token";
+  hardpoint studio models/macpherson.toml --no-browser --port 4711 \\
+      --token my-own-long-token";
 
 /// `hardpoint studio`.
 #[derive(Args, Debug)]

@@ -100,6 +100,19 @@ impl Folder {
         Ok(())
     }
 
+    /// Removes the files of a family from a folder of an earlier run, and the folder unless it holds anything else.
+    pub fn clear(path: &Path, family: &[&str]) -> Result<(), WriteError> {
+        let absent_is_fine = |e| if is_absent(&e) { Ok(()) } else { Err(e) };
+        for path in family.iter().map(|name| path.join(name)) {
+            std::fs::remove_file(&path)
+                .or_else(absent_is_fine)
+                .map_err(|error| WriteError { path: path.clone(), error })?;
+        }
+        // Whatever is left in it is not of this program.
+        let _ = std::fs::remove_dir(path);
+        Ok(())
+    }
+
     /// Renames all files to their final names; fails if one exists.
     pub fn commit_new(mut self) -> Result<(), WriteError> {
         for (file, path) in std::mem::take(&mut self.pending) {

@@ -30,10 +30,10 @@ use hardpoint_report::summary::{RunStatus, Summary};
 use hardpoint_report::validity::ValidityFact;
 use hardpoint_study::difference::{Difference, DifferenceScheme, finite_differences_each};
 use hardpoint_study::validity;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::args::Run;
-use crate::folder::{Folder, WriteError, of_case};
+use crate::folder::{Folder, WriteError, file_name, of_case};
 use crate::maps;
 use crate::outcome::Outcome;
 use crate::pages;
@@ -64,6 +64,8 @@ const REPORT: &str = "report.html";
 const CLEARANCES: &str = "clearances.csv";
 /// Metrics with their derivatives.
 const METRICS: &str = "metrics.csv";
+/// The outcome of a run, or of its cases.
+const SUMMARY: &str = "summary.json";
 /// All files that a run may write; the last one marks them as complete.
 const FILES: [&str; 21] = [
     "motion.csv",
@@ -86,7 +88,7 @@ const FILES: [&str; 21] = [
     "map_sensitivity.csv",
     "maps.json",
     REPORT,
-    "summary.json",
+    SUMMARY,
 ];
 
 /// Solves, writes, and prints the summary.
@@ -108,6 +110,7 @@ pub fn run(options: &Run) -> Outcome {
         None => maps::solved(&session, &file, options.common.formulation()),
         Some(_) => Vec::new(),
     };
+    let earlier = if options.motions.case.is_none() { cases_in(&whole) } else { Vec::new() };
     let all = file.clone();
     let mut done: Vec<CaseDone> = Vec::new();
     let mut results = CaseResults { metrics: Vec::new(), first: None };
@@ -127,6 +130,14 @@ pub fn run(options: &Run) -> Outcome {
     };
     let several = !file.model.cases.is_empty() && options.motions.case.is_none();
     let outcome = session.end(session.for_motions_of(file, &options.motions, each));
+    if !session.interrupted() {
+        let gone = earlier.iter().filter(|folder| done.iter().all(|case| case.folder != **folder));
+        if let Err(error) =
+            gone.map(|name| whole.join(name)).try_for_each(|path| Folder::clear(&path, &FILES))
+        {
+            return session.not_written(&error);
+        }
+    }
     if !several {
         return outcome;
     }
@@ -138,7 +149,7 @@ pub fn run(options: &Run) -> Outcome {
             folder.write(REPORT, |out| out.write_all(html.as_bytes()))?;
         }
         let json = json_text(&serde_json::json!({ "generator": GENERATOR, "cases": done }));
-        folder.write("summary.json", |out| out.write_all(json.as_bytes()))?;
+        folder.write(SUMMARY, |out| out.write_all(json.as_bytes()))?;
         let report = page.map(|_| folder.path_of(REPORT));
         folder.commit(&[METRICS, REPORT])?;
         Ok(report)
@@ -156,6 +167,18 @@ pub fn run(options: &Run) -> Outcome {
         }
     }
     outcome
+}
+
+/// Names of the folders of cases that an earlier run left in the folder of the results, by its summary.
+fn cases_in(whole: &Path) -> Vec<String> {
+    #[derive(Deserialize)]
+    struct Earlier {
+        #[serde(default)]
+        cases: Vec<CaseDone>,
+    }
+    let text = std::fs::read_to_string(whole.join(SUMMARY)).unwrap_or_default();
+    let cases = serde_json::from_str(&text).map_or(Vec::new(), |Earlier { cases }| cases);
+    cases.into_iter().filter(|case| file_name(&case.case) == case.folder).map(|case| case.folder).collect()
 }
 
 /// Writes the metrics of all cases, if there are any.
@@ -225,7 +248,7 @@ fn grid_alone(
 }
 
 /// Outcome of a case, for the summary of all.
-#[derive(Serialize)]
+#[derive(Serialize, Deserialize)]
 struct CaseDone {
     case: String,
     folder: String,
@@ -669,7 +692,7 @@ impl Results<'_> {
         summary.timings.write = started.elapsed().as_secs_f64();
         summary.timings.total = session.seconds();
         let json = json_text(summary);
-        folder.write("summary.json", |out| out.write_all(json.as_bytes()))
+        folder.write(SUMMARY, |out| out.write_all(json.as_bytes()))
     }
 }
 

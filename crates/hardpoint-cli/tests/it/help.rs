@@ -54,12 +54,13 @@ fn examples(bench: &Bench, command: &str) -> Vec<String> {
     for line in all.lines().skip(1).take_while(|line| !line.is_empty()) {
         match line.trim_start().strip_prefix("hardpoint ") {
             Some(example) => found.push(example.into()),
-            // Long lines are wrapped.
-            None => found
-                .iter_mut()
-                .last()
-                .into_iter()
-                .for_each(|last| *last += &format!(" {}", line.trim_start())),
+            // A copied example is whole only where a line that is continued says so to the shell.
+            None => {
+                let last = found.last_mut().and_then(|last| last.strip_suffix(" \\").map(str::to_owned));
+                let Some(first) = last else { panic!("`{command} --help`: a broken example before {line}") };
+                found.pop();
+                found.push(format!("{first} {}", line.trim_start()));
+            }
         }
     }
     let alone = |line: &String| {

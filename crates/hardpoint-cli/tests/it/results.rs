@@ -26,6 +26,28 @@ fn json_of_a_run_is_its_summary_and_nothing_else() {
 }
 
 #[test]
+fn files_of_cases_that_are_no_longer_in_the_model_are_removed() {
+    let bench = Bench::with(&["slider.toml"]);
+    let alone = bench.text("slider.toml");
+    let cases = |names: &[&str]| {
+        let cases = names.iter().map(|name| format!("\n[cases.{name}]\nother_drivers = \"as_in_model\"\n"));
+        bench.put("slider.toml", &format!("{alone}{}", cases.collect::<String>()));
+        assert_eq!(bench.run(&["run", "slider.toml", "-o", "out"]).status.code(), Some(0));
+    };
+    let has = |folder: &str| bench.path(&format!("out/{folder}")).exists();
+    cases(&["one", "two", "kept"]);
+    bench.put("out/kept/notes.txt", "of the user");
+    cases(&["one", "three"]);
+    assert!(has("one/summary.json") && has("three/summary.json") && !has("two"));
+    assert!(has("kept/notes.txt") && !has("kept/summary.json") && !has("kept/report.html"));
+    // A run of one case leaves the others as they are.
+    assert_eq!(bench.run(&["run", "slider.toml", "--case", "one", "-o", "out"]).status.code(), Some(0));
+    assert!(has("three/summary.json"));
+    cases(&[]);
+    assert!(has("summary.json") && !has("one") && !has("three"));
+}
+
+#[test]
 fn both_formulations_write_the_same_motion() {
     let bench = Bench::with(&["slider.toml"]);
     for (folder, extra) in [("relative", &[][..]), ("absolute", &["--absolute"])] {

@@ -123,8 +123,8 @@ pub(super) fn planar(r: &mut Reader<'_>, format: &'static Table, model: &mut DeT
             square(driver, "about");
         }
     });
-    variables(model, plane);
-    if !["time", "cases"].iter().any(|key| model.contains_key(*key)) {
+    variables(r, model, plane);
+    if !model.contains_key("time") {
         let mut time = DeTable::new();
         for (name, number) in [("end", "1.0"), ("steps", "100")] {
             if let Ok(number) = DeValue::parse(number) {
@@ -260,21 +260,36 @@ fn three(list: &mut DeArray<'_>, plane: Plane) {
 }
 
 /// Splits design variables along both axes of the plane, `along = "xy"`, into one for each.
-fn variables(model: &mut DeTable<'_>, plane: Plane) {
+fn variables(r: &mut Reader<'_>, model: &mut DeTable<'_>, plane: Plane) {
     let Some(design) = model.get_mut("design").and_then(table_of) else { return };
     for (name, value) in std::mem::take(design) {
         let along = value.get_ref().as_table().and_then(|t| t.get("along"));
         let along = along.and_then(|v| Some((v.get_ref().as_str()?.to_owned(), v.span())));
-        let Some((_, at)) = along.filter(|(word, _)| word == plane.word || word == "xyz") else {
-            design.insert(name, value);
-            continue;
+        let both = along.filter(|(word, _)| word == plane.word || word == "xyz");
+        let entries = match both {
+            None => vec![(name, value)],
+            Some((_, at)) => (0..3)
+                .filter(|axis| plane.coordinate(*axis).is_some())
+                .map(|axis| {
+                    let mut one = value.clone();
+                    if let Some(table) = table_of(&mut one) {
+                        table.insert(key("along", at.clone()), text(AXES[axis], at.clone()));
+                    }
+                    (key(format!("{}_{}", name.get_ref(), AXES[axis]), name.span()), one)
+                })
+                .collect(),
         };
-        for axis in (0..3).filter(|axis| plane.coordinate(*axis).is_some()) {
-            let mut one = value.clone();
-            if let Some(table) = table_of(&mut one) {
-                table.insert(key("along", at.clone()), text(AXES[axis], at.clone()));
+        for (name, value) in entries {
+            if design.contains_key(&**name.get_ref()) {
+                let [first, second] = plane.axes.map(|axis| AXES[axis]);
+                let message = format!("there are two design variables named `{}`", shown(name.get_ref()));
+                r.report("HP0201", name.span(), message).help = Some(format!(
+                    "`along = \"{}\"` makes the variables NAME_{first} and NAME_{second}; rename one of the two",
+                    plane.word
+                ));
+            } else {
+                design.insert(name, value);
             }
-            design.insert(key(format!("{}_{}", name.get_ref(), AXES[axis]), name.span()), one);
         }
     }
 }

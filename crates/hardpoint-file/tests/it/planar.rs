@@ -39,6 +39,31 @@ fn path(model: &Model, name: &str) -> Vec<[f64; 3]> {
 }
 
 #[test]
+fn a_variable_in_both_axes_does_not_replace_one_of_the_same_name() {
+    let clash = "design.cx = { move = \"C\", along = \"xy\" }\n";
+    for other in
+        ["design.cx_x = { move = \"D\", along = \"x\" }\n", "design.cx_y = { move = \"D\", along = \"y\" }\n"]
+    {
+        for text in [format!("{}{clash}{other}", six_lines()), format!("{}{other}{clash}", six_lines())] {
+            let Err(errors) = parse(&text, "planar.toml") else { panic!("accepted:\n{text}") };
+            let shown = errors.to_string();
+            let name = &other["design.".len()..][..4];
+            assert!(shown.contains(&format!("there are two design variables named `{name}`")), "{shown}");
+            assert!(shown.contains("HP0201") && shown.contains("NAME_x and NAME_y"), "{shown}");
+        }
+    }
+}
+
+#[test]
+fn cases_without_a_time_last_one_second_as_the_model_does() {
+    let with_cases = file(&format!("{}[cases.slow]\nlaws.motor = \"20*t\"\n", six_lines()));
+    let alone = file(&six_lines());
+    let motions = with_cases.model.motions();
+    assert_eq!(motions.len(), 1);
+    assert_eq!(motions[0].times, alone.model.times);
+}
+
+#[test]
 fn a_four_bar_in_six_lines_moves_as_the_published_one() {
     let text = six_lines();
     assert_eq!(text.lines().count(), 6);
