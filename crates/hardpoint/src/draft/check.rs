@@ -6,6 +6,7 @@ mod design;
 mod driven;
 mod elements;
 mod equilibrium;
+mod field;
 mod formulas;
 mod grids;
 mod joint_limits;
@@ -21,7 +22,6 @@ mod wheels;
 
 pub(crate) use elements::{CheckElement, ElementCheck};
 pub use formulas::{ConstantError, Nominal};
-pub(super) use measures::MeasureCheck;
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 

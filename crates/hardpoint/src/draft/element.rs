@@ -1,16 +1,14 @@
-//! Masses and forces as written, and their resolution to a model.
+//! Masses and forces as written.
 
 use crate::draft::{DirectionDraft, FieldDraft, MeasureField, NumberDraft, PointRef, TablePointDraft};
 use crate::law::Law;
 use crate::model::{
     Angle, Axes, BodyId, CoupledStiffness, CubicStiffness, CubicTorsionalStiffness, Damping, Density,
-    Direction, ElementKind, Force, Inertia, JointId, Length, Mass, Moment, MomentTable, Plain, PointId,
-    Solid, SpringTable, Stiffness, TorsionalDamping, TorsionalStiffness, WheelId, WheelPoint, element,
-    elements, if_mass,
+    Direction, Force, Inertia, JointId, Length, Mass, Moment, MomentTable, Plain, PointId, Solid,
+    SpringTable, Stiffness, TorsionalDamping, TorsionalStiffness, WheelId, WheelPoint, elements, if_mass,
 };
 use crate::space::Vec3;
 
-use super::check::MeasureCheck;
 use super::measure::Field;
 
 /// A mass or force as written.
@@ -42,14 +40,14 @@ pub struct ElementType {
     pub fields: &'static [MeasureField],
 }
 
-/// Element types as written, and their resolution to the model.
+/// Element types as written.
 macro_rules! in_drafts {
     ($(
         $(#[doc = $doc:literal])* $variant:ident $name:literal $table:ident {
             $($(#[doc = $field_doc:literal])* $field:ident: $draft:ty => $type:ty),* $(,)?
         }
     )*) => {
-        /// Kind of an element as written; see [`ElementKind`].
+        /// Kind of an element as written; see [`ElementKind`](crate::model::ElementKind).
         #[derive(Clone, Debug)]
         #[allow(clippy::large_enum_variant, reason = "a draft has few elements, and builders name their fields")]
         pub enum ElementKindDraft {
@@ -85,17 +83,6 @@ macro_rules! in_drafts {
         }
 
         impl ElementKindDraft {
-            /// Resolves the element to its form in a model.
-            pub(super) fn resolve(&self, check: &mut MeasureCheck<'_, '_>) -> Option<ElementKind> {
-                match self {
-                    $(Self::$variant { $($field),* } => {
-                        $(let $field = <$type as Field>::resolve($field, stringify!($field), check);)*
-                        Some(ElementKind::$variant(element::$variant { $($field: $field?),* }))
-                    })*
-                    Self::Unread => None,
-                }
-            }
-
             /// True if it has mass.
             pub fn has_mass(&self) -> bool {
                 match self {

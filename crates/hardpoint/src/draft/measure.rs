@@ -1,17 +1,24 @@
-//! Measures as written, and their resolution to a model.
+//! Measures as written.
 
-use crate::draft::{DirectionDraft, NumberDraft, PointRef, RayDraft, TablePointDraft};
+use crate::draft::{DirectionDraft, NumberDraft, PointRef, TablePointDraft};
 use crate::expression::Expression;
 use crate::joint::VectorKind;
 use crate::law::Law;
 use crate::model::{
     Axes, AxleMeasure, BodyId, ClearanceId, Combination, Direction, DriverId, ElasticDirection, ElasticId,
-    ElementId, ElementUnit, JacobianValue, JointId, MeasureKind, OrientationAngle, OutputSource, PointId,
-    Ray, ReactionPart, Solid, WheelId, WheelMeasure, measures,
+    ElementId, ElementUnit, JacobianValue, JointId, OrientationAngle, OutputSource, PointId, Ray,
+    ReactionPart, Solid, WheelId, WheelMeasure, measures,
 };
 use crate::space::Vec3;
 
-use super::check::MeasureCheck;
+/// A measure.
+#[derive(Clone, Debug)]
+pub struct MeasureDraft {
+    /// Name.
+    pub name: String,
+    /// Kind of the measure.
+    pub kind: MeasureKindDraft,
+}
 
 /// Type of measure, by its name in model files. Measures of wheels and axles are [`WheelMeasure`] and [`AxleMeasure`].
 #[derive(Debug)]
@@ -143,6 +150,20 @@ pub enum FieldDraft {
     Expression(Expression),
 }
 
+/// A direction that an angle is measured from or to; see [`Ray`](crate::model::Ray).
+#[derive(Clone, Debug)]
+pub enum RayDraft {
+    /// From one point to another.
+    Between([PointRef; 2]),
+    /// Fixed in a body.
+    Fixed {
+        /// The body's name.
+        body: String,
+        /// Direction in the design configuration.
+        axis: DirectionDraft,
+    },
+}
+
 /// Value that is written as a `Draft` and resolved to this type in a model. Fields of measures and elements have such
 /// types.
 pub(super) trait Field: Sized {
@@ -151,11 +172,9 @@ pub(super) trait Field: Sized {
     const REQUIRED: bool = true;
     /// Returns the value as written; `None` if it is missing or of another kind.
     fn draft(written: Option<FieldDraft>) -> Option<Self::Draft>;
-    /// Resolves the value; `None`, with an error, if it is not known.
-    fn resolve(draft: &Self::Draft, key: &'static str, check: &mut MeasureCheck<'_, '_>) -> Option<Self>;
 }
 
-/// Measure types as written, and their resolution to the model.
+/// Measure types as written.
 macro_rules! in_drafts {
     ($(
         $(#[doc = $doc:literal])* $variant:ident $name:literal
@@ -165,7 +184,7 @@ macro_rules! in_drafts {
             dimension: $dimension:expr, known: $known:expr, kinks: $kinks:expr, positive: $positive:expr,
             words: $says:expr;
     )*) => {
-        /// Kind of a measure as written; see [`MeasureKind`].
+        /// Kind of a measure as written; see [`MeasureKind`](crate::model::MeasureKind).
         #[derive(Clone, Debug)]
         pub enum MeasureKindDraft {
             /// Entry that could not be read.
@@ -215,21 +234,6 @@ macro_rules! in_drafts {
                         $($field: <$type as Field>::draft(fields.next()?)?,)*
                     }),)*
                     _ => None,
-                }
-            }
-        }
-
-        impl MeasureKindDraft {
-            /// Resolves the measure to its form in a model; the check resolves those of wheels and axles.
-            pub(super) fn resolve(&self, check: &mut MeasureCheck<'_, '_>) -> Option<MeasureKind> {
-                match self {
-                    $(Self::$variant { $($field),* } => {
-                        $(let $field = <$type as Field>::resolve($field, stringify!($field), check);)*
-                        Some(MeasureKind::$variant { $($field: $field?),* })
-                    })*
-                    Self::Unread => None,
-                    Self::Wheel { wheel, what } => check.wheel(wheel, *what),
-                    Self::Axle { axle, what } => check.axle(axle, *what),
                 }
             }
         }

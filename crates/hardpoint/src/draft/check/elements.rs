@@ -1,19 +1,17 @@
 //! Checks of masses and forces: references and parameters.
 
-use crate::draft::measure::Field;
-use crate::draft::{DraftError, ElementDraft, FieldDraft, FieldKind, NumberDraft, Section, TablePointDraft};
+use crate::draft::{DraftError, ElementDraft, NumberDraft, Section, TablePointDraft};
 use crate::joint::{DIRECTION_NAMES, Quantity};
-use crate::law::Law;
 use crate::model::element::{
     CURVES, CoupledStiffness, ElasticLaw, Elasticity, JointFriction, SCALES, StiffnessEntry,
 };
 use crate::model::{
-    Angle, BodyId, Coupling, CubicStiffness, CubicTorsionalStiffness, Damping, Density, Direction, Element,
-    ElementKind, ElementUnit, Force, GROUND, Inertia, JointId, Length, Mass, Model, Moment, NumberId, Plain,
-    PointId, SpringTable, Stiffness, TorsionalDamping, TorsionalStiffness, each_number, elements,
+    BodyId, Direction, Element, ElementKind, GROUND, JointId, Model, NumberId, Plain, PointId, SpringTable,
+    elements,
 };
 
-use super::{Checker, Here, MeasureCheck, PERPENDICULAR_TOLERANCE};
+use super::field::FieldCheck;
+use super::{Checker, Here, PERPENDICULAR_TOLERANCE};
 
 impl Checker<'_> {
     pub(super) fn add_elements(&mut self) {
@@ -34,7 +32,7 @@ impl Checker<'_> {
 
     fn one_element(&mut self, e: &ElementDraft, here: Here) -> Option<ElementKind> {
         let faults = self.faults.len();
-        let kind = e.kind.resolve(&mut MeasureCheck::new(self, &e.name, here))?;
+        let kind = e.kind.resolve(&mut FieldCheck::new(self, &e.name, here))?;
         let mut check = ElementCheck { check: self, name: &e.name, here };
         kind.check(&mut check);
         if let Some(friction) = kind.friction(check.model()) {
@@ -315,70 +313,5 @@ impl ElementCheck<'_, '_> {
             let message = format!("`viscous` of `{}` is negative", self.name);
             self.fault("HP0252", "viscous", message).help("correct it, or leave it out");
         }
-    }
-}
-
-macro_rules! number_field {
-    ($type:ident) => {
-        impl Field for $type {
-            type Draft = NumberDraft;
-            const KIND: FieldKind = FieldKind::Number(ElementUnit::$type);
-
-            fn draft(written: Option<FieldDraft>) -> Option<NumberDraft> {
-                if let Some(FieldDraft::Number(draft)) = written { Some(draft) } else { None }
-            }
-
-            fn resolve(
-                number: &NumberDraft,
-                key: &'static str,
-                c: &mut MeasureCheck<'_, '_>,
-            ) -> Option<Self> {
-                c.number(number, key).map(Self)
-            }
-        }
-
-        impl Field for Option<$type> {
-            type Draft = Option<NumberDraft>;
-            const KIND: FieldKind = FieldKind::Number(ElementUnit::$type);
-            const REQUIRED: bool = false;
-
-            fn draft(written: Option<FieldDraft>) -> Option<Self::Draft> {
-                match written {
-                    None => Some(None),
-                    Some(FieldDraft::Number(draft)) => Some(Some(draft)),
-                    Some(_) => None,
-                }
-            }
-
-            fn resolve(
-                number: &Self::Draft,
-                key: &'static str,
-                c: &mut MeasureCheck<'_, '_>,
-            ) -> Option<Self> {
-                match number {
-                    Some(number) => c.number(number, key).map(|n| Some($type(n))),
-                    None => Some(None),
-                }
-            }
-        }
-    };
-}
-each_number!(number_field);
-
-impl Field for Option<Law> {
-    type Draft = Self;
-    const KIND: FieldKind = FieldKind::Law;
-    const REQUIRED: bool = false;
-
-    fn draft(written: Option<FieldDraft>) -> Option<Self> {
-        match written {
-            None => Some(None),
-            Some(FieldDraft::Law(law)) => Some(Some(law)),
-            Some(_) => None,
-        }
-    }
-
-    fn resolve(law: &Self, _: &'static str, _: &mut MeasureCheck<'_, '_>) -> Option<Self> {
-        Some(law.clone())
     }
 }

@@ -1,21 +1,15 @@
 //! Checks of measures and metrics: references, and availability of derivatives.
 
-use crate::draft::measure::Field;
-use crate::draft::{
-    DirectionDraft, DraftLocation, FieldDraft, FieldKind, MeasureDraft, MetricDraft, NumberDraft, PointRef,
-    RayDraft, Section, TablePointDraft,
-};
+use crate::draft::{DraftLocation, MeasureDraft, MetricDraft, RayDraft, Section};
 use crate::expression::Expression;
 use crate::joint::free_directions;
-use crate::model::element::{ActsOn, Compliance, CoupledStiffness, Properties};
+use crate::model::element::{ActsOn, Compliance, Properties};
 use crate::model::{
-    Axes, AxleMeasure, BodyId, CaseId, ClearanceId, Combination, CurvePart, Dimension, Direction, DriverId,
-    ElasticDirection, ElasticId, Element, ElementId, JacobianValue, JointId, Measure, MeasureKind, Metric,
-    MomentTable, NumberId, OrientationAngle, OutputSource, PointId, Ray, ReactionPart, Solid, SpringTable,
-    WheelId, WheelMeasure, WheelPoint, loads, of_bodies,
+    CaseId, Combination, CurvePart, Dimension, DriverId, ElasticId, Element, ElementId, JacobianValue,
+    Measure, MeasureKind, Metric, OutputSource, PointId, Ray, WheelId, loads, of_bodies,
 };
-use crate::space::Vec3;
 
+use super::field::FieldCheck;
 use super::{Checker, Here};
 
 impl Checker<'_> {
@@ -33,7 +27,7 @@ impl Checker<'_> {
     }
 
     fn one_measure(&mut self, m: &MeasureDraft, here: Here) -> Option<MeasureKind> {
-        let kind = m.kind.resolve(&mut MeasureCheck::new(self, &m.name, here))?;
+        let kind = m.kind.resolve(&mut FieldCheck::new(self, &m.name, here))?;
         self.check_load(&kind, m, here);
         self.check_articulation(&kind, here);
         self.check_deflection(&kind, here);
@@ -92,7 +86,7 @@ impl Checker<'_> {
     }
 
     /// The elastic joint or bushing of that name.
-    fn elastic(&mut self, name: &str, at: DraftLocation) -> Option<ElasticId> {
+    pub(super) fn elastic(&mut self, name: &str, at: DraftLocation) -> Option<ElasticId> {
         let element = self.force(name, at.clone())?;
         if self.model.elements[element.0].kind.elastic_law().is_some() {
             return Some(ElasticId(element));
@@ -200,7 +194,7 @@ impl Checker<'_> {
     }
 
     /// Returns the force with this name.
-    fn force(&mut self, name: &str, at: DraftLocation) -> Option<ElementId> {
+    pub(super) fn force(&mut self, name: &str, at: DraftLocation) -> Option<ElementId> {
         let draft = self.draft;
         let k = self.find("force", name, at, draft.forces.iter().map(|f| f.name.as_str()))?;
         let name = &draft.forces[k].name;
@@ -321,7 +315,7 @@ impl Checker<'_> {
     }
 
     /// Resolves a direction that an angle is measured from or to.
-    fn ray(&mut self, ray: &RayDraft, owner: &str, here: Here, key: &'static str) -> Option<Ray> {
+    pub(super) fn ray(&mut self, ray: &RayDraft, owner: &str, here: Here, key: &'static str) -> Option<Ray> {
         match ray {
             RayDraft::Between([from, to]) => {
                 let points =
@@ -557,171 +551,6 @@ impl Checker<'_> {
         Combination { inputs: inputs.collect(), per_unit: per_unit(dimension), dimension, ..c.clone() }
     }
 }
-
-/// Check of one measure.
-pub(in crate::draft) struct MeasureCheck<'c, 'd> {
-    check: &'c mut Checker<'d>,
-    owner: &'c str,
-    here: Here,
-    /// Joint of the measure, for the field that names its coordinate.
-    joint: Option<JointId>,
-}
-
-impl<'c, 'd> MeasureCheck<'c, 'd> {
-    pub(super) fn new(check: &'c mut Checker<'d>, owner: &'c str, here: Here) -> Self {
-        Self { check, owner, here, joint: None }
-    }
-
-    pub(super) fn number(&mut self, number: &NumberDraft, key: &'static str) -> Option<NumberId> {
-        self.check.element_number(number, self.owner, key, self.here.key(key))
-    }
-
-    pub fn wheel(&mut self, name: &str, what: WheelMeasure) -> Option<MeasureKind> {
-        self.check.wheel_measure(name, what, self.here)
-    }
-
-    pub fn axle(&mut self, name: &str, what: AxleMeasure) -> Option<MeasureKind> {
-        self.check.axle_measure(name, what, self.here)
-    }
-}
-
-/// Draft type and model type of each kind of field.
-macro_rules! field {
-    ($type:ty, $kind:ident, $form:ident: $draft:ty, |$written:ident, $key:ident, $c:ident| $resolve:expr) => {
-        impl Field for $type {
-            type Draft = $draft;
-            const KIND: FieldKind = FieldKind::$kind;
-
-            fn draft(written: Option<FieldDraft>) -> Option<$draft> {
-                if let Some(FieldDraft::$form(draft)) = written { Some(draft) } else { None }
-            }
-
-            fn resolve($written: &$draft, $key: &'static str, $c: &mut MeasureCheck<'_, '_>) -> Option<Self> {
-                $resolve
-            }
-        }
-    };
-    ($type:ty, $kind:ident, $form:ident: Option<$draft:ty>, may |$written:ident, $key:ident, $c:ident| $resolve:expr) => {
-        impl Field for $type {
-            type Draft = Option<$draft>;
-            const KIND: FieldKind = FieldKind::$kind;
-            const REQUIRED: bool = false;
-
-            fn draft(written: Option<FieldDraft>) -> Option<Self::Draft> {
-                match written {
-                    None => Some(None),
-                    Some(FieldDraft::$form(draft)) => Some(Some(draft)),
-                    Some(_) => None,
-                }
-            }
-
-            fn resolve(
-                $written: &Self::Draft,
-                $key: &'static str,
-                $c: &mut MeasureCheck<'_, '_>,
-            ) -> Option<Self> {
-                $resolve
-            }
-        }
-    };
-}
-
-field!(JointId, Joint, Name: String, |name, key, c| {
-    c.joint = c.check.joint(name, c.here.key(key));
-    c.joint
-});
-field!(usize, Coordinate, Name: Option<String>, may |name, _key, c| {
-    c.check.coordinate(c.joint?, name.as_deref(), c.here)
-});
-field!(PointId, Point, Point: PointRef, |point, key, c| c.check.point(point, c.owner, c.here.key(key)));
-field!(Option<PointId>, Point, Point: Option<PointRef>, may |point, key, c| match point {
-    Some(point) => PointId::resolve(point, key, c).map(Some),
-    None => Some(None),
-});
-field!(Vec<PointId>, Points, Points: Vec<PointRef>, |points, key, c| {
-    let found: Vec<_> = points.iter().map(|point| PointId::resolve(point, key, c)).collect();
-    found.into_iter().collect()
-});
-field!(WheelId, Wheel, Name: String, |name, key, c| c.check.wheel_named(name, c.here.key(key)));
-field!(Option<WheelId>, Wheel, Name: Option<String>, may |name, key, c| match name {
-    Some(name) => WheelId::resolve(name, key, c).map(Some),
-    None => Some(None),
-});
-field!(ClearanceId, Clearance, Name: String, |name, key, c| c.check.clearance_named(name, c.here.key(key)));
-field!(Solid, Mesh, Solid: Solid, |solid, _key, _c| Some(*solid));
-field!(Option<SpringTable>, Table, Table: Option<Vec<TablePointDraft>>, may |points, key, c| match points {
-    Some(points) => c.check.spring_table(points, c.owner, c.here, key).map(Some),
-    None => Some(None),
-});
-field!(Option<MomentTable>, MomentTable, Table: Option<Vec<TablePointDraft>>, may |points, key, c| match points {
-    Some(points) => c.check.spring_table(points, c.owner, c.here, key).map(|table| Some(MomentTable(table))),
-    None => Some(None),
-});
-field!(Option<CoupledStiffness>, Matrix, Matrix: Option<Box<[[NumberDraft; 6]; 6]>>, may |rows, key, c| match rows {
-    Some(rows) => c.check.coupled_stiffness(rows, c.owner, c.here, key).map(Some),
-    None => Some(None),
-});
-field!(Vec3, Direction, Direction: Vec3, |v, key, c| {
-    Some(c.check.line(&DirectionDraft::Along(*v), c.owner, c.here, key)?.1)
-});
-field!(Option<Vec3>, Direction, Direction: Option<Vec3>, may |v, key, c| match v {
-    Some(v) => Vec3::resolve(v, key, c).map(Some),
-    None => Some(None),
-});
-field!(Direction, Line, Line: DirectionDraft, |line, key, c| Some(c.check.line(line, c.owner, c.here, key)?.0));
-field!(Option<Direction>, Line, Line: Option<DirectionDraft>, may |line, key, c| match line {
-    Some(line) => Direction::resolve(line, key, c).map(Some),
-    None => Some(None),
-});
-field!(Ray, Ray, Ray: RayDraft, |ray, key, c| c.check.ray(ray, c.owner, c.here, key));
-field!(OutputSource, Output, Name: String, |name, key, c| c.check.output(name, c.here.key(key)));
-field!(BodyId, Body, Name: String, |name, key, c| c.check.body(name, c.here.key(key)));
-field!(Option<BodyId>, Body, Name: Option<String>, may |name, key, c| match name {
-    Some(name) => BodyId::resolve(name, key, c).map(Some),
-    None => Some(None),
-});
-field!(ReactionPart, ReactionPart, Part: ReactionPart, |part, _key, _c| Some(*part));
-field!(ElasticId, Force, Name: String, |name, key, c| c.check.elastic(name, c.here.key(key)));
-field!(ElasticDirection, ElasticDirection, Elastic: ElasticDirection, |direction, _key, _c| Some(*direction));
-field!(ElementId, Force, Name: String, |name, key, c| c.check.force(name, c.here.key(key)));
-field!(Option<ElementId>, Force, Name: Option<String>, may |name, key, c| match name {
-    Some(name) => ElementId::resolve(name, key, c).map(Some),
-    None => Some(None),
-});
-field!(Option<Axes>, Axes, Axes: Option<Axes>, may |axes, _key, _c| Some(*axes));
-field!(Option<WheelPoint>, WheelPoint, WheelPoint: Option<WheelPoint>, may |point, _key, _c| Some(*point));
-field!(OrientationAngle, OrientationAngle, Angle: OrientationAngle, |angle, _key, _c| Some(*angle));
-field!(DriverId, Driver, Name: Option<String>, may |name, _key, c| {
-    c.check.driver_or_only(name.as_deref(), c.owner, c.here)
-});
-field!(Option<DriverId>, Driver, Name: Option<String>, may |name, _key, c| match name {
-    Some(name) => c.check.driver_or_only(Some(name), c.owner, c.here).map(Some),
-    None => Some(None),
-});
-field!(Vec<DriverId>, Drivers, Names: Option<Vec<String>>, may |names, key, c| {
-    let found: Vec<_> = match names {
-        Some(names) => names.iter().map(|name| c.check.driver_named(name, c.here.key(key))).collect(),
-        None => c.check.driver_ids.clone(),
-    };
-    found.into_iter().collect()
-});
-field!(Option<Vec<DriverId>>, Drivers, Names: Option<Vec<String>>, may |names, key, c| match names {
-    Some(_) => Vec::<DriverId>::resolve(names, key, c).map(Some),
-    None => Some(None),
-});
-field!(JacobianValue, JacobianValue, Jacobian: Option<JacobianValue>, may |value, _key, _c| {
-    Some(value.unwrap_or_default())
-});
-field!(Combination, Expression, Expression: Expression, |expression, key, c| {
-    let at = c.here.key(key);
-    let inputs: Vec<_> = expression.names().iter().map(|n| c.check.output(n, at.clone())).collect();
-    Some(Combination {
-        expression: expression.clone(),
-        inputs: inputs.into_iter().map(|source| Some((source?, 1.0))).collect::<Option<_>>()?,
-        per_unit: 1.0,
-        dimension: Dimension::NUMBER,
-    })
-});
 
 /// State of the check of a measure.
 #[derive(Clone, Copy)]
