@@ -209,6 +209,15 @@ fn function_name(function: Call) -> &'static str {
     }
 }
 
+/// Numbers of a body, in the order of the programs: r, the columns of A, v, omega, a, alpha.
+pub const BODY: usize = 24;
+
+/// Text within a comment.
+pub fn comment(text: &str) -> String {
+    let plain = |c: char| if c.is_control() { ' ' } else { c };
+    text.chars().map(plain).collect::<String>().replace("*/", "* /").replace("/*", "/ *").replace('@', "(at)")
+}
+
 /// A number with all its digits; a negative one in parentheses.
 pub fn literal(x: f64) -> String {
     let magnitude = match x.abs() {

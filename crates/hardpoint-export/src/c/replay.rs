@@ -4,7 +4,7 @@ use hardpoint::measure::MeasureFormulas;
 use hardpoint::model::{Driver, Model};
 use hardpoint::motion::{DrivenStep, MotionCheck};
 
-use super::BODY;
+use super::emit::BODY;
 
 /// A correction below this leaves round-off, as in `control.c`.
 const QUADRATIC: f64 = 1e-8;

@@ -22,7 +22,7 @@ const CEILINGS: &[(&str, [usize; 5])] = &[
     ("equilibrium", [1, 0, 0, 0, 0]),
     ("expression", [1, 0, 2, 0, 0]),
     ("hardpoint-cli", [14, 0, 14, 0, 0]),
-    ("hardpoint-export", [4, 0, 0, 824, 0]),
+    ("hardpoint-export", [4, 0, 0, 0, 0]),
     ("hardpoint-file", [11, 0, 0, 0, 0]),
     ("hardpoint-import", [36, 0, 10, 0, 0]),
     ("hardpoint-report", [10, 0, 5, 0, 3]),
