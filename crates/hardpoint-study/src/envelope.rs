@@ -183,82 +183,16 @@ pub fn envelope(
     request: &Request,
     more: &(dyn Fn() -> bool + Sync),
 ) -> Result<Envelope, EnvelopeError> {
-    let mut cost = StudyCost { designs: 1, ..StudyCost::default() };
-    let poses_of = |motions: &mut [Positions<'_>], cost: &mut StudyCost| {
-        let mut gathered =
-            Gathered { swept: SweptShape::new(request.shape, request.relative_to), paths: vec![] };
-        for motion in motions.iter_mut() {
-            gathered.add(model, formulation, design, motion, cost, more)?;
-        }
-        if !more() {
-            return Err(EnvelopeError::Interrupted);
-        }
-        if gathered.swept.is_empty() {
-            let first = motions.iter().find_map(|motion| motion.stops().first());
-            return Err(EnvelopeError::NotReached(first.map(|found| Box::new(found.stop.clone()))));
-        }
-        Ok(gathered)
-    };
-    let mut motions = Vec::new();
-    for sweep in &request.sweeps {
-        motions.push(Positions::first(model, formulation, sweep)?);
-    }
-    let mut found = poses_of(&mut motions, &mut cost)?;
-    let most_distances = MOST_DISTANCES / found.swept.triangles_per_distance();
-    let left = Cell::new(most_distances);
-    let of = |swept: &SweptShape, cell: f64| {
-        let union = Union { swept, margin: request.margin };
-        let made = surface(&union, swept.len(), union.cube(), cell, MOST_CELLS, &left, more);
-        if more() { Ok(made) } else { Err(EnvelopeError::Interrupted) }
-    };
-    let radius = found.swept.ball(0).1;
-    let mut is_resolved = false;
-    for _ in 0..MOST_PASSES {
-        let longest = TRAVEL * radius;
-        let closer: Vec<Positions<'_>> =
-            motions.iter().zip(&found.paths).map(|(motion, path)| motion.closer(path, longest)).collect();
-        is_resolved = closer.iter().zip(&motions).all(|(new, old)| new.count() == old.count());
-        if is_resolved || closer.iter().map(Positions::count).sum::<usize>() > MOST_POSES {
-            break;
-        }
-        motions = closer;
-        found = poses_of(&mut motions, &mut cost)?;
-    }
-    let extent = 2.0 * (radius + request.margin);
+    let study = Study { model, formulation, design, request, more };
+    let mut search = Search::new(study)?;
+    let is_resolved = search.bring_poses_closer()?;
+    let extent = 2.0 * (search.radius + request.margin);
     let error = request.error.unwrap_or(extent * ERROR);
     let (half, first_cell) = (0.5 * error, extent / FIRST_CELLS);
-    let rounding = request.margin + found.swept.round();
-    let (mut between, mut enough, mut made) = (TRAVEL * radius, false, None);
-    for level in 0.. {
-        let mut finer_motions: Vec<Positions<'_>> =
-            motions.iter().map(|motion| motion.finer(level)).collect();
-        let finer = poses_of(&mut finer_motions, &mut cost);
-        let surface = finer.and_then(|finer| Ok((of(&finer.swept, first_cell)?, finer)));
-        if made.is_some() && matches!(surface, Err(EnvelopeError::Interrupted)) {
-            break;
-        }
-        let (surface, finer) = surface?;
-        motions = finer_motions;
-        let Some(surface) = surface else {
-            // More poses take too long.
-            if made.is_none() {
-                left.set(most_distances);
-                made = of(&found.swept, first_cell)?;
-            }
-            break;
-        };
-        let [of_surface, of_corners] = beyond(&found.swept, &finer.swept, &surface, request.margin);
-        made = Some(surface);
-        let is_sharp = of_surface.max(of_corners) > SHARP * rounding;
-        between = if is_sharp { of_surface.max(of_corners) * OF_SHARP } else { of_surface * OF_ROUND };
-        let grew = finer.swept.len() > found.swept.len();
-        found = finer;
-        enough = between <= half && is_resolved;
-        if between <= half || !grew || found.swept.len() > MOST_POSES {
-            break;
-        }
-    }
-    let surface = refined(made, first_cell, half, |cell| of(&found.swept, cell).ok().flatten());
+    let coarse = search.add_poses_between(half, first_cell)?;
+    let surface = refined(coarse.surface, first_cell, half, |cell| {
+        search.surface(&search.poses.swept, cell).ok().flatten()
+    });
     if surface.triangles.is_empty() {
         let name = &model.shapes[request.shape.0].name;
         return Err(EnvelopeError::TooThin(RequestError::model(
@@ -266,16 +200,134 @@ pub fn envelope(
             "add a distance around it (margin)",
         )));
     }
+    let is_within_error = coarse.is_enough && is_resolved && surface.deviation <= half;
     Ok(Envelope {
-        is_within_error: enough && surface.deviation <= half,
-        interrupted: !(more() || enough && surface.deviation <= half),
+        is_within_error,
+        interrupted: !(more() || is_within_error),
         surface,
-        poses: found.swept.len(),
+        poses: search.poses.swept.len(),
         error,
-        between_poses: between,
-        stops: motions.iter().flat_map(Positions::stops).cloned().collect(),
-        cost,
+        between_poses: coarse.between_poses,
+        stops: search.motions.iter().flat_map(Positions::stops).cloned().collect(),
+        cost: search.cost,
     })
+}
+
+/// The shape, its motions and the design of an envelope.
+#[derive(Clone, Copy)]
+struct Study<'a> {
+    model: &'a Model,
+    formulation: Formulation,
+    design: &'a [f64],
+    request: &'a Request,
+    more: &'a (dyn Fn() -> bool + Sync),
+}
+
+/// Search for poses that are close enough to each other.
+struct Search<'a> {
+    study: Study<'a>,
+    motions: Vec<Positions<'a>>,
+    poses: Gathered,
+    /// Radius of the shape at its first pose, m.
+    radius: f64,
+    /// Number of distances that may be evaluated for all surfaces, and of those that are left.
+    most_distances: usize,
+    left: Cell<usize>,
+    cost: StudyCost,
+}
+
+/// Surface of poses that are close enough to each other, with cells of the first size.
+struct CoarseSurface {
+    /// `None` if it takes too long.
+    surface: Option<Triangles>,
+    /// Estimate of the distance by which poses between those of the envelope reach beyond it, m.
+    between_poses: f64,
+    /// True if that is no more than half of the permitted error.
+    is_enough: bool,
+}
+
+impl<'a> Search<'a> {
+    /// The positions of the sweeps, and others between them, so that no driver moves far between two of them.
+    fn new(study: Study<'a>) -> Result<Self, EnvelopeError> {
+        let mut cost = StudyCost { designs: 1, ..StudyCost::default() };
+        let first = |sweep| Positions::first(study.model, study.formulation, sweep);
+        let mut motions = study.request.sweeps.iter().map(first).collect::<Result<Vec<_>, _>>()?;
+        let poses = Gathered::of(&study, &mut motions, &mut cost)?;
+        let most_distances = MOST_DISTANCES / poses.swept.triangles_per_distance();
+        let (radius, left) = (poses.swept.ball(0).1, Cell::new(most_distances));
+        Ok(Self { study, motions, poses, radius, most_distances, left, cost })
+    }
+
+    /// Surface of some poses; `None` if it takes too long.
+    fn surface(&self, swept: &SweptShape, cell: f64) -> Result<Option<Triangles>, EnvelopeError> {
+        let Study { request, more, .. } = self.study;
+        let union = Union { swept, margin: request.margin };
+        let made = surface(&union, swept.len(), union.cube(), cell, MOST_CELLS, &self.left, more);
+        if more() { Ok(made) } else { Err(EnvelopeError::Interrupted) }
+    }
+
+    /// Adds poses until the shape travels by a part of its size only between two of them. Returns false if it still
+    /// travels farther.
+    fn bring_poses_closer(&mut self) -> Result<bool, EnvelopeError> {
+        let longest = TRAVEL * self.radius;
+        for _ in 0..MOST_PASSES {
+            let paths = self.motions.iter().zip(&self.poses.paths);
+            let mut closer: Vec<Positions<'_>> =
+                paths.map(|(motion, path)| motion.closer(path, longest)).collect();
+            if closer.iter().zip(&self.motions).all(|(new, old)| new.count() == old.count()) {
+                return Ok(true);
+            }
+            if closer.iter().map(Positions::count).sum::<usize>() > MOST_POSES {
+                break;
+            }
+            self.poses = Gathered::of(&self.study, &mut closer, &mut self.cost)?;
+            self.motions = closer;
+        }
+        Ok(false)
+    }
+
+    /// Adds poses between all of them, until what these reach beyond the surface leaves half of the permitted error.
+    fn add_poses_between(&mut self, half: f64, cell: f64) -> Result<CoarseSurface, EnvelopeError> {
+        let mut coarse =
+            CoarseSurface { surface: None, between_poses: TRAVEL * self.radius, is_enough: false };
+        for level in 0.. {
+            let mut motions: Vec<Positions<'_>> =
+                self.motions.iter().map(|motion| motion.finer(level)).collect();
+            let finer = Gathered::of(&self.study, &mut motions, &mut self.cost);
+            let made = finer.and_then(|finer| Ok((self.surface(&finer.swept, cell)?, finer)));
+            if coarse.surface.is_some() && matches!(made, Err(EnvelopeError::Interrupted)) {
+                break;
+            }
+            let (surface, finer) = made?;
+            self.motions = motions;
+            let Some(surface) = surface else {
+                // More poses take too long.
+                if coarse.surface.is_none() {
+                    self.left.set(self.most_distances);
+                    coarse.surface = self.surface(&self.poses.swept, cell)?;
+                }
+                break;
+            };
+            coarse.between_poses = self.reach_between(&finer.swept, &surface);
+            coarse.is_enough = coarse.between_poses <= half;
+            coarse.surface = Some(surface);
+            let grew = finer.swept.len() > self.poses.swept.len();
+            self.poses = finer;
+            if coarse.is_enough || !grew || self.poses.swept.len() > MOST_POSES {
+                break;
+            }
+        }
+        Ok(coarse)
+    }
+
+    /// Estimate of the distance by which poses between finer ones reach beyond these, from that by which they reach
+    /// beyond those so far.
+    fn reach_between(&self, finer: &SweptShape, surface: &Triangles) -> f64 {
+        let margin = self.study.request.margin;
+        let [of_surface, of_corners] = beyond(&self.poses.swept, finer, surface, margin);
+        let is_sharp = of_surface.max(of_corners) > SHARP * (margin + self.poses.swept.round());
+        if is_sharp { of_surface.max(of_corners) * OF_SHARP } else { of_surface * OF_ROUND }
+    }
 }
 
 /// Surface with cells so small that it deviates by at most `half`, or the last one before the time limit. The coarse
@@ -392,16 +444,36 @@ struct Gathered {
 }
 
 impl Gathered {
+    /// The poses at the positions of all motions.
+    fn of(
+        study: &Study<'_>,
+        motions: &mut [Positions<'_>],
+        cost: &mut StudyCost,
+    ) -> Result<Self, EnvelopeError> {
+        let request = study.request;
+        let mut gathered =
+            Self { swept: SweptShape::new(request.shape, request.relative_to), paths: Vec::new() };
+        for motion in motions.iter_mut() {
+            gathered.add(study, motion, cost)?;
+        }
+        if !(study.more)() {
+            return Err(EnvelopeError::Interrupted);
+        }
+        if gathered.swept.is_empty() {
+            let first = motions.iter().find_map(|motion| motion.stops().first());
+            return Err(EnvelopeError::NotReached(first.map(|found| Box::new(found.stop.clone()))));
+        }
+        Ok(gathered)
+    }
+
     /// Adds the poses at some positions; those of a motion that ends early are changed to end there.
     fn add(
         &mut self,
-        model: &Model,
-        formulation: Formulation,
-        design: &[f64],
+        study: &Study<'_>,
         positions: &mut Positions<'_>,
         cost: &mut StudyCost,
-        more: &(dyn Fn() -> bool + Sync),
     ) -> Result<(), TopologyError> {
+        let Study { model, formulation, design, more, .. } = *study;
         let mut path = Vec::new();
         match positions {
             Positions::Times { model, times, stops } => {

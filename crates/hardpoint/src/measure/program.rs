@@ -201,8 +201,8 @@ impl RecordedFormulas {
 ///
 /// Inputs are 24 numbers of each of the [`bodies`](Self::bodies) (r, the columns of A, v, omega, a, alpha), the whole
 /// turns of the measures of [`turning`](Self::turning), rad, a zero, and the design variables if requested. Outputs are
-/// one guard for each of [`outputs`], then value, rate and acceleration of each. An output is undefined if its guard is
-/// positive or NaN. A guard that is the constant one belongs to an output that is not arithmetic.
+/// one guard for each of [`outputs`](super::outputs), then value, rate and acceleration of each. An output is undefined
+/// if its guard is positive or NaN. A guard that is the constant one belongs to an output that is not arithmetic.
 #[derive(Clone, Debug)]
 pub struct MeasureFormulas {
     /// The program.

@@ -13,8 +13,7 @@ use super::{Function, Interval, Real};
 /// (`docs/theory.md`, section 20): 5 for one variable, 16 for two, 44 for three. Constants have one, and combine with
 /// all; a quantity in one variable and one in two do not combine.
 ///
-/// The degree of a quantity may be limited ([`to_degree`](Self::to_degree)); that of a result is the lowest of its
-/// operands.
+/// The degree of a quantity may be limited (`to_degree`); that of a result is the lowest of its operands.
 ///
 /// Every operation is exact up to rounding. Functions follow from their differential equations: with the operator
 /// `D = sum x_i d/dx_i`, which multiplies a coefficient by its degree, `D f(u) = f'(u) D u`.

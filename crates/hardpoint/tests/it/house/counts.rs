@@ -26,7 +26,7 @@ const CEILINGS: &[(&str, [usize; 5])] = &[
     ("hardpoint-file", [11, 0, 0, 0, 0]),
     ("hardpoint-import", [36, 0, 10, 0, 0]),
     ("hardpoint-report", [10, 0, 5, 0, 3]),
-    ("hardpoint-study", [14, 1, 2, 0, 0]),
+    ("hardpoint-study", [13, 0, 2, 0, 0]),
     ("hardpoint-tape", [4, 0, 2, 0, 0]),
     ("joint", [1, 0, 0, 0, 0]),
     ("law", [1, 0, 6, 0, 0]),
