@@ -11,8 +11,8 @@
 //! live values. All steps are linear in the size of the recording.
 
 use crate::counts::Counts;
-use crate::number::{Recording, Step, larger};
-use crate::program::{Call, Instruction, Operand, Program};
+use crate::number::{Recording, Step};
+use crate::program::{Call, Instruction, Operand, Program, larger};
 
 /// Options of the conversion of a recording to a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use crate::program::Call;
+use crate::program::{Call, larger};
 
 /// Recorded computation: steps and outputs.
 ///
@@ -310,12 +310,6 @@ impl Number {
             s.push_folded(step, value)
         })
     }
-}
-
-/// Returns the larger of two numbers; NaN if either is NaN.
-#[inline(always)]
-pub(crate) fn larger(a: f64, b: f64) -> f64 {
-    if b <= a || a.is_nan() { a } else { b }
 }
 
 impl Add for Number {

@@ -4,8 +4,6 @@
 
 use fearless_simd::{Level, SimdBase, SimdFloat, dispatch, f64x8};
 
-use crate::number::larger;
-
 /// Number of scalars in a vector.
 pub const LANES: usize = 8;
 
@@ -79,6 +77,12 @@ calls! {
     Atan2 "atan2" of 2 |a, b| a.atan2(b);
     /// `a.powf(b)`.
     Pow "pow" of 2 |a, b| a.powf(b);
+}
+
+/// Returns the larger of two numbers; NaN if either is NaN.
+#[inline(always)]
+pub(crate) fn larger(a: f64, b: f64) -> f64 {
+    if b <= a || a.is_nan() { a } else { b }
 }
 
 /// Instruction; its result is the value with its own index.

@@ -11,6 +11,7 @@
 //! Limitations: laws depend on time only. Corners of expressions without `abs`, `atan2`, `min`, `max`, `step` or `if`,
 //! such as those of `asin(sin(t))` or `sqrt(t^2)`, are not among the [jumps](Law::jumps).
 
+mod breaks;
 mod error;
 mod formula;
 mod harmonic;
@@ -26,8 +27,8 @@ mod trapezoid;
 
 use std::fmt;
 
+use breaks::Break;
 pub use error::LawError;
-use jumps::Break;
 pub use jumps::Jump;
 use kind::{LawKind, kinds};
 use parameter::Seed;

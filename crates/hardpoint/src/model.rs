@@ -10,6 +10,7 @@ pub mod change;
 mod change_point;
 mod coupler;
 mod curve;
+mod dimension;
 mod driver;
 pub mod element;
 mod element_number;
@@ -41,6 +42,7 @@ pub use change_point::ChangePointPolicy;
 pub use coupler::{Coupler, CouplerTerm, Transmission};
 pub(crate) use curve::Contact;
 pub use curve::{CURVE_PIECE, Curve, CurvePiece, CurvePoint};
+pub use dimension::Dimension;
 pub use driver::{Driver, Equilibrium};
 pub use element::{
     Angle, Axes, CoupledStiffness, Coupling, CubicStiffness, CubicTorsionalStiffness, Damping, Density,
@@ -58,7 +60,7 @@ pub use id::{
 pub use joint::{Direction, Joint};
 pub use joint_limit::{JointLimit, LimitEnd};
 pub use measure::{
-    Combination, Dimension, ElasticDirection, ElasticId, JacobianValue, KnownOrders, Measure, MeasureKind,
+    Combination, ElasticDirection, ElasticId, JacobianValue, KnownOrders, Measure, MeasureKind,
     OrientationAngle, OutputSource, Ray, ReactionPart,
 };
 pub(crate) use measure::{UnitForce, loads, measures, of_bodies, of_bodies_but_joints};

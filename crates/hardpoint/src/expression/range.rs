@@ -131,6 +131,15 @@ impl Range {
     }
 }
 
+impl Relation {
+    /// True if the comparison holds for all numbers of two ranges, false if it holds for none; `None` otherwise.
+    pub(crate) fn holds_between(self, a: Range, b: Range) -> Option<bool> {
+        let corners = [(a.low, b.low), (a.low, b.high), (a.high, b.low), (a.high, b.high)];
+        let first = self.holds(a.low, b.high)?;
+        corners.iter().all(|&(a, b)| self.holds(a, b) == Some(first)).then_some(first)
+    }
+}
+
 impl Add for Range {
     type Output = Self;
 

@@ -5,8 +5,6 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::number::{Function, Real};
 
-use super::range::Range;
-
 /// Scalar type in which an expression is evaluated: a number with its derivatives, or [bounds](super::range::Stretch)
 /// of a number.
 pub(crate) trait ExpressionValue:
@@ -203,13 +201,6 @@ impl Relation {
             Self::Greater => order == Ordering::Greater,
             Self::GreaterOrEqual => order != Ordering::Less,
         }
-    }
-
-    /// True if the comparison holds for all numbers of two ranges, false if it holds for none; `None` otherwise.
-    pub(crate) fn holds_between(self, a: Range, b: Range) -> Option<bool> {
-        let corners = [(a.low, b.low), (a.low, b.high), (a.high, b.low), (a.high, b.high)];
-        let first = self.holds(a.low, b.high)?;
-        corners.iter().all(|&(a, b)| self.holds(a, b) == Some(first)).then_some(first)
     }
 }
 

@@ -5,7 +5,8 @@ use std::fmt;
 use crate::expression::{self, Enclosure, ExpressionError, Program, Stretch};
 use crate::number::{Interval, Jet, Real};
 
-use super::jumps::{Break, find_switches};
+use super::breaks::Break;
+use super::jumps::find_switches;
 use super::kind::LawKind;
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 

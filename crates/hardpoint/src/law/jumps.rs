@@ -4,6 +4,7 @@ use crate::expression::Program;
 use crate::number::Jet;
 
 use super::Law;
+use super::breaks::{Break, SAME_TIME, merged};
 use super::kind::LawKind;
 use super::sequence::backwards;
 
@@ -18,56 +19,12 @@ pub struct Jump {
     pub size: f64,
 }
 
-/// A time at which a law may jump, bracketed by two times between which the law is not evaluated.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Break {
-    time: f64,
-    before: f64,
-    after: f64,
-}
-
-impl Break {
-    /// A break at an exactly known time.
-    pub(super) fn exactly(time: f64) -> Self {
-        Self { time, before: time, after: time }
-    }
-
-    /// The time, with the two times that bracket it.
-    pub(super) fn bracket(self) -> [f64; 3] {
-        [self.before, self.time, self.after]
-    }
-
-    /// The last time before it, and the first after it.
-    pub(super) fn sides(self) -> [f64; 2] {
-        let [before, after] = [self.before.min(self.time), self.after.max(self.time)];
-        [
-            if before < self.time { before } else { before.next_down() },
-            if after > self.time { after } else { after.next_up() },
-        ]
-    }
-
-    /// True if the break is inside a law that begins at `start` and ends at `end`.
-    pub(super) fn is_between(self, start: f64, end: f64) -> bool {
-        let room = SAME_TIME * self.time.abs().max(1.0);
-        self.time > start + room && self.time < end - room
-    }
-
-    /// This break in a law that starts later, with tolerance for the rounding of the difference of times.
-    pub(super) fn delayed(self, by: f64) -> Self {
-        let room = 4.0 * f64::EPSILON * self.time.abs().max(by.abs());
-        Self { time: self.time + by, before: self.before + by - room, after: self.after + by + room }
-    }
-}
-
 /// Number of subintervals of the time in which an expression is searched for switches. A branch that switches there and
 /// back within one subinterval is missed.
 const CUTS: u32 = 4096;
 
 /// Branches that change more often than this within a subinterval change by rounding.
 const MOST_CHANGES: usize = 4;
-
-/// Breaks closer together than this, relative to the requested times, are merged.
-const SAME_TIME: f64 = 1e-12;
 
 /// A jump is reported if it exceeds this fraction of the largest magnitude of the same derivative ...
 const RELATIVE: f64 = 1e-9;
@@ -154,22 +111,6 @@ fn just_before(law: &Law, t: f64) -> Jet {
     let [f, d, dd, ddd] = law.evaluate(backwards(t), None).derivatives();
     // In s = -t: d/dt = -d/ds
     Jet([f, -d, dd, -ddd])
-}
-
-/// Breaks in order of time; those at the same time are merged.
-fn merged(mut breaks: Vec<Break>, same_time: f64) -> Vec<Break> {
-    breaks.sort_by(|a, b| a.time.total_cmp(&b.time));
-    let mut merged: Vec<Break> = Vec::new();
-    for at in breaks {
-        match merged.last_mut() {
-            Some(last) if at.time - last.time <= same_time => {
-                last.before = last.before.min(at.before);
-                last.after = last.after.max(at.after);
-            }
-            _ => merged.push(at),
-        }
-    }
-    merged
 }
 
 #[cfg(test)]

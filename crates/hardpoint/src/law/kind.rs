@@ -6,7 +6,7 @@ use crate::expression::{Range, Stretch};
 use crate::linalg::Segment;
 use crate::number::{Interval, Jet, Real};
 
-use super::jumps::Break;
+use super::breaks::Break;
 use super::parameter::{Parameter, ParameterKind, Seed};
 
 /// A kind of law.

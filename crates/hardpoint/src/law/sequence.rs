@@ -6,8 +6,8 @@ use crate::expression::{Range, Stretch};
 use crate::number::{Interval, Jet, Real};
 
 use super::Law;
+use super::breaks::Break;
 use super::error::LawError;
-use super::jumps::Break;
 use super::kind::LawKind;
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 use super::table::ROUNDING_OF_TIME;

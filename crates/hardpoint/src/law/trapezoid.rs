@@ -6,8 +6,8 @@ use crate::expression::Stretch;
 use crate::number::{Interval, Jet, Real};
 
 use super::Law;
+use super::breaks::Break;
 use super::error::{LawError, check_finite};
-use super::jumps::Break;
 use super::kind::{LawKind, in_pieces, is_after, is_before, one_way, parameters};
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 

@@ -25,10 +25,11 @@ use crate::space::{Twist, Vec3, Wrench};
 use crate::topology::Topology;
 
 use super::acting::{AppliedLoads, MovingBody};
-use super::equilibrium::{Equilibrium, LoadedPosition, TransmittedLoads};
+use super::equilibrium::{Equilibrium, LoadedPosition};
 use super::friction::Friction;
 use super::inertia::{ChangedGeometry, InertialLoad, SpatialInertia};
 use super::measures::LoadMeasures;
+use super::transmitted::TransmittedLoads;
 use super::virtual_motion::{TurningClosures, VirtualMotion, Weights};
 
 /// A function of the transmitted loads.

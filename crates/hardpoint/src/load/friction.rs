@@ -9,8 +9,8 @@ use crate::model::{ElementId, JointId, Model};
 use crate::space::{Real, Vec3, Wrench};
 
 use super::acting::{AppliedLoads, force_size};
-use super::equilibrium::{SelfStress, TransmittedLoads};
 use super::measures::LoadMeasures;
+use super::transmitted::{SelfStress, TransmittedLoads};
 
 /// Maximum number of Newton iterations. Newton's method from zero friction takes 3 to 7 of them if there is a solution;
 /// otherwise the joints jam.

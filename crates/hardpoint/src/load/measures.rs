@@ -4,7 +4,7 @@ use crate::model::{Axes, BodyId, ElementId, JointId, MeasureKind, ReactionPart, 
 use crate::space::{Real, Vec3, Wrench};
 
 use super::acting::AppliedLoads;
-use super::equilibrium::TransmittedLoads;
+use super::transmitted::TransmittedLoads;
 
 /// All loads at one time.
 pub(super) struct LoadMeasures<'a, T> {

@@ -37,6 +37,7 @@ mod opening_loads;
 mod program;
 mod results;
 mod solver;
+mod transmitted;
 mod turns;
 mod virtual_motion;
 

@@ -11,9 +11,10 @@ use crate::space::{Vec3, Wrench};
 use crate::topology::Topology;
 
 use super::derivatives::LoadDerivatives;
-use super::equilibrium::{Equilibrium, SelfStress, TransmittedLoads};
+use super::equilibrium::Equilibrium;
 use super::measures::LoadMeasures;
 use super::results::Deflection;
+use super::transmitted::{SelfStress, TransmittedLoads};
 use super::turns::Turns;
 
 /// Evaluates loads at the position of a stepper, for one design.

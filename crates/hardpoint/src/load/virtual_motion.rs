@@ -10,7 +10,8 @@ use crate::sensitivity::{Transmission, Turning};
 use crate::space::{Twist, Wrench};
 use crate::topology::{ClosureId, LinkId, Topology};
 
-use super::equilibrium::{DriverSite, LoadSites, TransmittedLoads};
+use super::equilibrium::{DriverSite, LoadSites};
+use super::transmitted::TransmittedLoads;
 
 /// Derivatives of a load by the transmitted loads.
 #[derive(Debug)]

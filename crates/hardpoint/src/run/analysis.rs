@@ -22,10 +22,10 @@ use crate::sensitivity::{Admissibility, JointDefect, admissibility_at_design, al
 use crate::topology::{Formulation, Topology, TopologyError, TreeRow};
 
 use super::needed::NeededResults;
-use super::request::Run;
+use super::request::{Run, Scope};
 use super::sink::Sink;
 use super::solution::{Solution, StreamSummary};
-use super::walk::{Continuations, PreparedDesign, Scope, Walk};
+use super::walk::{Continuations, PreparedDesign, Walk};
 
 /// Reason why steps at equilibrium are solved by the kernel.
 const AT_EQUILIBRIUM: &str = "its elastic joints are in equilibrium";

@@ -19,9 +19,9 @@ use super::analysis::Analysis;
 use super::curve::JUST_BEFORE;
 use super::metric::{is_among, unresolved_corners, unresolved_extrema, unresolved_times, window_times};
 use super::needed::{MetricUse, NeededResults};
-use super::request::Progress;
+use super::request::{Progress, Scope};
 use super::solution::Solution;
-use super::walk::{PreparedDesign, Scope};
+use super::walk::PreparedDesign;
 use super::window::Footprint;
 
 /// Maximum travel of a driver between two times, rad or sizes of its loop: the error of a polynomial of degree five for

@@ -13,10 +13,9 @@ use crate::motion::step_program::Purpose;
 use crate::sensitivity::{Resistance, Sensitivities, admissibility, note_defects};
 
 use super::analysis::Analysis;
-use super::request::Run;
+use super::request::{Run, Scope};
 use super::sink::{Sink, hand_over};
 use super::solution::{Solution, StreamSummary};
-use super::walk::Scope;
 
 impl Analysis<'_> {
     /// Solves many designs, each with variable k at its entry k (m, rad or a plain number; missing entries are 0).

@@ -8,7 +8,7 @@ use crate::model::{JointLimit, LimitEnd, Model, OutputSource, VariableId};
 use crate::motion::{Stop, StopKind};
 
 use super::curve::{SampledCurve, crossing};
-use super::walk::Scope;
+use super::request::Scope;
 use super::{Analysis, PreparedDesign, Run, Solution, Walk};
 
 /// A crossing is located if a step of Newton's method is below this fraction of the motion: positions are solved to

@@ -2,8 +2,9 @@
 
 use std::ops::ControlFlow;
 
+use super::request::Scope;
 use super::sink::NullSink;
-use super::walk::{Scope, SolvedSteps};
+use super::walk::SolvedSteps;
 use super::{Analysis, Walk};
 use crate::load::{CurveRange, Deflection, DriverLoad, JointLoad, LargestDeflection, LoadSolver, Loads};
 use crate::model::{Axes, ElementId, JointId};

@@ -2,8 +2,9 @@
 
 use std::ops::ControlFlow;
 
+use super::request::Scope;
 use super::sink::NullSink;
-use super::walk::{PerPlan, Plan, Scope, SolvedSteps};
+use super::walk::{PerPlan, Plan, SolvedSteps};
 use super::{Analysis, Walk};
 use crate::model::VariableId;
 use crate::motion::margin::Margins;

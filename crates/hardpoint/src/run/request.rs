@@ -8,7 +8,6 @@ use crate::model::OutputSource;
 
 use super::needed::MetricUse;
 use super::solution::Solution;
-use super::walk::Scope;
 
 /// Request of a run: the design, and the results to compute.
 ///
@@ -152,4 +151,20 @@ pub struct Progress {
     pub done: usize,
     /// Total number of output times.
     pub total: usize,
+}
+
+/// Requested results of a design.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Scope {
+    pub sensitivities: bool,
+    pub measures: bool,
+    /// Total number of designs, this one included; it decides whether a program saves time.
+    pub of_many: usize,
+}
+
+impl Scope {
+    /// Scope of a single design.
+    pub fn of_one(sensitivities: bool, measures: bool) -> Self {
+        Self { sensitivities, measures, of_many: 1 }
+    }
 }

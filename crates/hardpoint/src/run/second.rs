@@ -4,8 +4,9 @@
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 
+use super::request::Scope;
 use super::sink::NullSink;
-use super::walk::{PerPlan, Plan, Scope, SolvedSteps};
+use super::walk::{PerPlan, Plan, SolvedSteps};
 use super::{Analysis, PreparedDesign, Walk};
 use crate::design::BodyFixed;
 use crate::equilibrium::{Along, Curvatures};

@@ -22,7 +22,7 @@ use crate::sensitivity::{Admissibility, BodySensitivity, JointDefect, Sensitivit
 
 use super::analysis::Analysis;
 use super::needed::NeededResults;
-use super::request::Progress;
+use super::request::{Progress, Scope};
 use super::sink::{NullSink, Sink, hand_over};
 
 /// Part of the way to an output time by which other openings must lead further than those before them: less is the
@@ -31,22 +31,6 @@ const FURTHER: f64 = 1e-6;
 
 /// Part of the pivot ratio with other openings below which those at hand are worse.
 const BETTER: f64 = 0.1;
-
-/// Requested results of a design.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Scope {
-    pub sensitivities: bool,
-    pub measures: bool,
-    /// Total number of designs, this one included; it decides whether a program saves time.
-    pub of_many: usize,
-}
-
-impl Scope {
-    /// Scope of a single design.
-    pub fn of_one(sensitivities: bool, measures: bool) -> Self {
-        Self { sensitivities, measures, of_many: 1 }
-    }
-}
 
 /// A design that is prepared for solution.
 pub(crate) struct PreparedDesign {

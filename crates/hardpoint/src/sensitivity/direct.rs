@@ -29,7 +29,7 @@ use crate::number::{self, Dual};
 use crate::space::{Real, Twist, Wrench};
 use crate::topology::{BlockId, ClosureId, LinkId, RowId, RowTerm, Topology};
 
-use super::adjoint::Turning;
+use super::turning::Turning;
 
 /// Step of the difference quotients for second derivatives of laws by parameters, in the parameter's unit; first
 /// derivatives are exact. The error is proportional to its square.

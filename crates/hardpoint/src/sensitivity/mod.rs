@@ -11,8 +11,9 @@ mod second;
 mod solver;
 mod storage;
 mod transmission;
+mod turning;
 
-pub(crate) use adjoint::{Adjoint, DefectWatch, Load, Support, Turning};
+pub(crate) use adjoint::{Adjoint, DefectWatch, Load, Support};
 pub use admissible::{Admissibility, Condition, JointDefect, admissibility_at_design, conditions_at_design};
 pub(crate) use direct::{DirectDifferentiation, PlanVelocity};
 pub use second::{BodyCurvature, PairDirection};
@@ -22,3 +23,4 @@ pub(crate) use solver::{
 };
 pub use storage::{BodySensitivity, Derivatives, Sensitivities};
 pub(crate) use transmission::{Transmission, Transposed, Way};
+pub(crate) use turning::Turning;

@@ -10,6 +10,7 @@ use crate::model::{BodyId, JointId, Model};
 
 use super::error::TopologyError;
 use super::matching::match_columns;
+use super::plan::SparseRow;
 use super::{
     Block, BlockId, ClosureColumn, ClosureId, CoordinateId, CoupledColumn, Formulation, LinkId, LoopLink,
     RowId, RowTerm, SetBy, Topology, error,
@@ -23,10 +24,6 @@ pub(super) const RANK_TOLERANCE: f64 = 1e-8;
 
 /// Largest number of unknowns that redundant rows join to one block: a grid of scissors would be one of hundreds.
 const LARGEST_TIED: usize = 40;
-
-/// Sparse row of the Jacobian in the design configuration: (coordinate, entry). Lengths are relative to the sizes of
-/// their loops.
-pub(super) type SparseRow = Vec<(CoordinateId, f64)>;
 
 /// Returns the Jacobian of all rows of all closures in the design configuration. Rows of further terms of a coupler are
 /// empty; the first row of the coupler has their sum.

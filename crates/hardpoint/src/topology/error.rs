@@ -3,7 +3,7 @@
 use crate::draft::some_of;
 use crate::model::{BodyId, DriverId, GROUND, JointId, Model};
 
-use super::blocks::SparseRow;
+use super::plan::SparseRow;
 use super::{Closure, CutReason, Formulation, Link, RowId, Topology};
 
 /// Error of a mechanism that its drivers cannot drive.

@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use crate::linalg::{Factors, FullPivot, LARGEST_DENSE};
 use crate::model::Model;
 
-use super::blocks::{RANK_TOLERANCE, SparseRow, columns_in_block, design_jacobian};
+use super::blocks::{RANK_TOLERANCE, columns_in_block, design_jacobian};
 use super::error::TopologyError;
+use super::plan::SparseRow;
 use super::{BlockId, RowId, Topology, error};
 
 /// Counts the degrees of freedom. Every unknown is already determined.

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 
 use crate::model::{BodyId, DriverId, JointId, Model};
 
-use super::blocks::{RANK_TOLERANCE, SparseRow, design_jacobian};
+use super::blocks::{RANK_TOLERANCE, design_jacobian};
+use super::plan::SparseRow;
 use super::tree::choose_tree;
 use super::{CoordinateId, Formulation, JointRole, RowId, SetBy, Topology, size};
 

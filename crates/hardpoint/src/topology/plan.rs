@@ -234,6 +234,10 @@ pub struct RowPlace {
     pub unit: f64,
 }
 
+/// Sparse row of the Jacobian in the design configuration: (coordinate, entry). Lengths are relative to the sizes of
+/// their loops.
+pub(super) type SparseRow = Vec<(CoordinateId, f64)>;
+
 /// Term of a constraint: a row times a factor.
 #[derive(Clone, Copy, Debug)]
 pub struct RowTerm {

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use crate::linalg::Elimination;
 use crate::model::Model;
 
-use super::blocks::{SparseRow, columns_in_block, design_jacobian};
+use super::blocks::{columns_in_block, design_jacobian};
+use super::plan::SparseRow;
 use super::{CoordinateId, RowId, SetBy, Topology};
 
 /// Coefficient of a constraint in a combination below which it is zero.

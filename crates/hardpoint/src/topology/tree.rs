@@ -5,7 +5,7 @@ use std::collections::BinaryHeap;
 
 use crate::constraint::Row;
 use crate::joint::Freedom;
-use crate::model::{BodyId, DriverId, GROUND, JointId, Model};
+use crate::model::{BodyId, DriverId, GROUND, Joint, JointId, Model};
 
 use super::{
     BlockId, Closure, ClosureId, Coordinate, CoordinateId, CutReason, Formulation, JointRole, Link, LinkId,
@@ -22,18 +22,6 @@ type DriversOf = Vec<Vec<(DriverId, Option<usize>)>>;
 /// Chooses the tree and lists links, coordinates and closures. Blocks are assigned later. `preferred` are joints that
 /// are in the tree if a tree has room for them.
 pub(super) fn choose_tree(model: &Model, formulation: Formulation, preferred: &[JointId]) -> Topology {
-    let mut roles: Vec<JointRole> = model
-        .joints
-        .iter()
-        .map(|j| {
-            JointRole::Cut(match (formulation, j.kind.freedoms, j.cut) {
-                (Formulation::Absolute, ..) => CutReason::Absolute,
-                (_, None, _) => CutReason::AlwaysCut,
-                (_, _, true) => CutReason::Requested,
-                _ => CutReason::ClosesLoop,
-            })
-        })
-        .collect();
     let mut topology = Topology {
         formulation,
         links: Vec::new(),
@@ -44,17 +32,42 @@ pub(super) fn choose_tree(model: &Model, formulation: Formulation, preferred: &[
         coupled_rows: Vec::new(),
         coupler_terms: Vec::new(),
         mobility: 0,
-        roles: Vec::new(),
+        roles: roles_outside_tree(model, formulation),
         start: None,
     };
-    // Prim's algorithm from ground: the joint with the fewest unknowns first, and among equals the one
-    // nearest to ground, then the first in the file. Shallow trees keep loops small and independent.
-    let mut depth: Vec<Option<usize>> = vec![None; model.bodies.len()];
     let mut drivers_of: DriversOf = vec![Vec::new(); model.joints.len()];
     for (k, d) in model.drivers.iter().enumerate() {
         drivers_of[d.joint.0].push((DriverId(k), model.driven(d).freedom));
     }
-    let mut reachable = Reachable::new(model, &drivers_of, formulation, preferred);
+    let paths = add_links(model, &drivers_of, preferred, &mut topology);
+    add_closures(model, &drivers_of, &paths, &mut topology);
+    couple_rows(model, &mut topology);
+    topology
+}
+
+/// Roles of the joints as long as none is in the tree.
+fn roles_outside_tree(model: &Model, formulation: Formulation) -> Vec<JointRole> {
+    let reason = |j: &Joint| match (formulation, j.kind.freedoms, j.cut) {
+        (Formulation::Absolute, ..) => CutReason::Absolute,
+        (_, None, _) => CutReason::AlwaysCut,
+        (_, _, true) => CutReason::Requested,
+        _ => CutReason::ClosesLoop,
+    };
+    model.joints.iter().map(|j| JointRole::Cut(reason(j))).collect()
+}
+
+/// Adds the links of the tree. Returns the path of each body to ground.
+///
+/// This is Prim's algorithm from ground: the joint with the fewest unknowns first, and among equals the one nearest to
+/// ground, then the first in the file. Shallow trees keep loops small and independent.
+fn add_links(
+    model: &Model,
+    drivers_of: &DriversOf,
+    preferred: &[JointId],
+    topology: &mut Topology,
+) -> Vec<PathToGround> {
+    let mut depth: Vec<Option<usize>> = vec![None; model.bodies.len()];
+    let mut reachable = Reachable::new(model, drivers_of, topology.formulation, preferred);
     let mut first_orphan = 0;
     reachable.place(&mut depth, GROUND, 0);
     loop {
@@ -62,16 +75,23 @@ pub(super) fn choose_tree(model: &Model, formulation: Formulation, preferred: &[
             Some(Candidate { unknowns, depth: parent_depth, joint, parent_end }) => {
                 let bodies = model.joints[joint].bodies;
                 let (parent, child) = (bodies[parent_end], bodies[1 - parent_end]);
-                roles[joint] = JointRole::Tree { child, unknowns };
-                let drivers = &drivers_of[joint];
-                add_joint_link(model, drivers, &mut topology, JointId(joint), parent, child, parent_end);
+                topology.roles[joint] = JointRole::Tree { child, unknowns };
+                add_joint_link(
+                    model,
+                    &drivers_of[joint],
+                    topology,
+                    JointId(joint),
+                    parent,
+                    child,
+                    parent_end,
+                );
                 reachable.place(&mut depth, child, parent_depth + 1);
             }
             None => {
                 let orphan = depth[first_orphan..].iter().position(Option::is_none);
                 let Some(orphan) = orphan.map(|k| BodyId(first_orphan + k)) else { break };
                 first_orphan = orphan.0 + 1;
-                add_free_link(&mut topology, orphan);
+                add_free_link(topology, orphan);
                 reachable.place(&mut depth, orphan, 1);
             }
         }
@@ -82,25 +102,37 @@ pub(super) fn choose_tree(model: &Model, formulation: Formulation, preferred: &[
         let depth = depth[link.child.0].expect("every body is placed by now");
         paths[link.child.0] = PathToGround { link: k, depth };
     }
-    let mut add = |joint: usize, driver: Option<DriverId>, coupler: Option<usize>, rows: Vec<Row>| {
-        let owner = Owner { joint: JointId(joint), driver, coupler };
-        add_closure(&mut topology, &paths, owner, model.joints[joint].bodies, rows);
-    };
+    paths
+}
+
+/// Adds the closures of joints outside the tree with their drivers, of rows that tree joints have, and of the terms of
+/// couplers, which come last.
+fn add_closures(model: &Model, drivers_of: &DriversOf, paths: &[PathToGround], topology: &mut Topology) {
     for (k, joint) in model.joints.iter().enumerate() {
-        let cut = matches!(roles[k], JointRole::Cut(_));
+        let cut = matches!(topology.roles[k], JointRole::Cut(_));
+        let mut add = |driver: Option<DriverId>, rows: Vec<Row>| {
+            let owner = Owner { joint: JointId(k), driver, coupler: None };
+            add_closure(topology, paths, owner, joint.bodies, rows);
+        };
         let rows = if cut { joint.kind.rows } else { joint.kind.tree_rows };
         if !rows.is_empty() {
-            add(k, None, None, rows.to_vec());
+            add(None, rows.to_vec());
         }
         for &(d, _) in drivers_of[k].iter().filter(|_| cut) {
-            add(k, Some(d), None, vec![model.driven(&model.drivers[d.0]).row]);
+            add(Some(d), vec![model.driven(&model.drivers[d.0]).row]);
         }
     }
     for (c, coupler) in model.couplers.iter().enumerate() {
         for term in &coupler.terms {
-            add(term.joint.0, None, Some(c), vec![model.coupled(term).row]);
+            let owner = Owner { joint: term.joint, driver: None, coupler: Some(c) };
+            let bodies = model.joints[term.joint.0].bodies;
+            add_closure(topology, paths, owner, bodies, vec![model.coupled(term).row]);
         }
     }
+}
+
+/// Makes the rows of each coupler's terms, which are the last ones, one constraint.
+fn couple_rows(model: &Model, topology: &mut Topology) {
     let mut first = topology.rows.len() - model.couplers.iter().map(|c| c.terms.len()).sum::<usize>();
     for coupler in &model.couplers {
         // Every other row has the factor 1, so a coupler is divided by its first coefficient.
@@ -118,8 +150,6 @@ pub(super) fn choose_tree(model: &Model, formulation: Formulation, preferred: &[
         }
         first += coupler.terms.len();
     }
-    topology.roles = roles;
-    topology
 }
 
 /// Candidate for the next tree joint; the minimum is taken first.
