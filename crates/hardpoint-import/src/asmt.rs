@@ -430,55 +430,15 @@ impl Reader<'_> {
             }
         };
         let Some([i, j]) = self.pair(joint) else { return };
-        let place = |m: &mut Mechanism, notes: &mut ImportLog, made: Joint| {
-            notes.taken(joint.text, joint.name(), Some(joint.at));
-            m.joint(made)
-        };
-        let note = source.note(self.notes);
-        let specified = |reader: &mut Self, key: &str| {
-            joint.child(key).and_then(|_| joint.numbers::<1>(key, reader.notes)).map(|[x]| x)
-        };
         let number = match kind {
-            "distance" => {
-                let mut rod = Joint::new(joint.name(), note, "distance", [i.body, j.body], i.pose.r)
-                    .between(i.pose.r, j.pose.r);
-                let nominal = (j.pose.r - i.pose.r).norm();
-                let length = specified(self, "distanceIJ").unwrap_or(nominal);
-                let why = if nominal == 0.0 || i.body == j.body {
-                    "its markers coincide, or are on the same body"
-                } else if length <= 0.0 {
-                    "its length is zero: use a ball joint"
-                } else {
-                    ""
-                };
-                if !why.is_empty() {
-                    self.notes.refused(joint.text, joint.name(), Some(joint.at), why);
-                    return;
-                }
-                if !equals_nominal(&self.m, length, nominal) {
-                    rod.length = Some(length);
-                }
-                Some(place(&mut self.m, self.notes, rod))
-            }
+            "distance" => self.rod(joint, source, [i, j]),
             "angle" if i.z().cross(j.z()).norm() > 1e-6 && i.body != j.body => {
-                let nominal = i.z().dot(j.z()).clamp(-1.0, 1.0).acos();
-                let angle = Joint::new(joint.name(), note, "angle", [i.body, j.body], i.pose.r)
-                    .with_axes(i.z(), j.z());
-                match specified(self, "theIzJz").filter(|a| (a.cos() - nominal.cos()).abs() > 1e-6) {
-                    Some(specified) => {
-                        let why = format!(
-                            "specified as {specified} rad, but {nominal} rad in the design configuration, which is used"
-                        );
-                        self.notes.approximated(joint.text, joint.name(), Some(joint.at), why);
-                        Some(self.m.joint(angle))
-                    }
-                    None => Some(place(&mut self.m, self.notes, angle)),
-                }
+                Some(self.angle(joint, source, [i, j]))
             }
             "angle" => join(&mut self.m, self.notes, source, "parallel", [i, j]),
             // The origin of marker J stays in a plane perpendicular to z of marker I, at the distance `offset`.
             "planar" | "inplane" | "line_in_plane" => {
-                let offset = specified(self, "offset").unwrap_or(0.0);
+                let offset = self.specified(joint, "offset").unwrap_or(0.0);
                 let i = Marker { body: i.body, pose: Pose { r: i.pose.r + i.z() * offset, ..i.pose } };
                 if kind == "line_in_plane" {
                     join(&mut self.m, self.notes, source, "dot1", [i, j]);
@@ -491,6 +451,54 @@ impl Reader<'_> {
         };
         let Some(number) = number else { return };
         self.joints.insert(joint.name().to_owned(), MarkerJoint { number, kind, markers: [i, j] });
+    }
+
+    /// Number that a joint specifies.
+    fn specified(&mut self, joint: &Node<'_>, key: &str) -> Option<f64> {
+        joint.child(key).and_then(|_| joint.numbers::<1>(key, self.notes)).map(|[x]| x)
+    }
+
+    /// Adds a rod between the origins of two markers.
+    fn rod(&mut self, joint: &Node<'_>, source: ElementSource<'_>, [i, j]: [Marker; 2]) -> Option<usize> {
+        let note = source.note(self.notes);
+        let mut rod = Joint::new(joint.name(), note, "distance", [i.body, j.body], i.pose.r)
+            .between(i.pose.r, j.pose.r);
+        let nominal = (j.pose.r - i.pose.r).norm();
+        let length = self.specified(joint, "distanceIJ").unwrap_or(nominal);
+        let why = if nominal == 0.0 || i.body == j.body {
+            "its markers coincide, or are on the same body"
+        } else if length <= 0.0 {
+            "its length is zero: use a ball joint"
+        } else {
+            ""
+        };
+        if !why.is_empty() {
+            self.notes.refused(joint.text, joint.name(), Some(joint.at), why);
+            return None;
+        }
+        if !equals_nominal(&self.m, length, nominal) {
+            rod.length = Some(length);
+        }
+        self.notes.taken(joint.text, joint.name(), Some(joint.at));
+        Some(self.m.joint(rod))
+    }
+
+    /// Adds a constant angle between the z axes of two markers.
+    fn angle(&mut self, joint: &Node<'_>, source: ElementSource<'_>, [i, j]: [Marker; 2]) -> usize {
+        let nominal = i.z().dot(j.z()).clamp(-1.0, 1.0).acos();
+        let note = source.note(self.notes);
+        let angle =
+            Joint::new(joint.name(), note, "angle", [i.body, j.body], i.pose.r).with_axes(i.z(), j.z());
+        match self.specified(joint, "theIzJz").filter(|a| (a.cos() - nominal.cos()).abs() > 1e-6) {
+            Some(specified) => {
+                let why = format!(
+                    "specified as {specified} rad, but {nominal} rad in the design configuration, which is used"
+                );
+                self.notes.approximated(joint.text, joint.name(), Some(joint.at), why);
+            }
+            None => self.notes.taken(joint.text, joint.name(), Some(joint.at)),
+        }
+        self.m.joint(angle)
     }
 
     /// Adds a joint that represents a massless link between two markers.

@@ -90,62 +90,14 @@ pub fn join(
     if ["fixed", "orientation"].contains(&kind) {
         return crate::robot::weld(m, notes, source, kind, [i, j]);
     }
+    let joint = Joint::new(source.name, source.note(notes), kind, [i.body, j.body], j.pose.r);
     let reach = [i, j].iter().map(|k| k.pose.r.norm()).fold(m.size(), f64::max);
-    let gap = j.pose.r - i.pose.r;
-    let across = gap - i.z() * i.z().dot(gap);
-    let (mut open, mut awry) = (false, false);
-    // Point of body i at which the joint is assembled: displacements that the joint allows are zero in the design
-    // configuration.
-    let mut on_i = i.pose.r;
-    let mut joint = Joint::new(source.name, source.note(notes), kind, [i.body, j.body], j.pose.r);
-    let parallel = |a: Vec3, b: Vec3| a.cross(b).norm() <= AWRY;
-    match kind {
-        "spherical" => open = gap.norm() > APART * reach,
-        "revolute" => {
-            joint = joint.along(i.z());
-            open = gap.norm() > APART * reach;
-            awry = !parallel(i.z(), j.z());
-        }
-        "translational" | "cylindrical" | "screw" | "inline" => {
-            joint = joint.along(i.z());
-            on_i = j.pose.r - across;
-            open = across.norm() > APART * reach;
-            awry = kind != "inline" && !parallel(i.z(), j.z());
-        }
-        "planar" | "inplane" => {
-            joint = joint.with_axes(i.z(), i.x());
-            on_i = i.pose.r + across;
-            open = (gap - across).norm() > APART * reach;
-            awry = kind == "planar" && !parallel(i.z(), j.z());
-        }
-        "parallel" => {
-            joint = joint.along(i.z());
-            awry = !parallel(i.z(), j.z());
-        }
-        "universal" | "dot1" => {
-            let (a, b) = (i.z(), j.z());
-            // Axes that are parallel but for round-off leave the direction of the cross open.
-            let square = (b - a * a.dot(b)).unit().filter(|_| !parallel(a, b));
-            let Some(square) = square else {
-                notes.refused(
-                    source.kind,
-                    source.name,
-                    source.at,
-                    "its two axes are parallel, but must be perpendicular",
-                );
-                return None;
-            };
-            awry = !has_perpendicular_axes([i, j]);
-            joint = joint.with_axes(a, square);
-            open = kind == "universal" && gap.norm() > APART * reach;
-        }
-        "constant_velocity" => {
-            let b = if i.z().dot(j.z()) < 0.0 { -j.z() } else { j.z() };
-            joint = joint.with_axes(i.z(), b);
-            open = gap.norm() > APART * reach;
-        }
-        _ => {}
-    }
+    let Some(JointFit { mut joint, on_i, open, awry }) = JointFit::of(joint, kind, [i, j], APART * reach)
+    else {
+        let why = "its two axes are parallel, but must be perpendicular";
+        notes.refused(source.kind, source.name, source.at, why);
+        return None;
+    };
     // A misalignment beyond missing digits is assembled: a frame on body i rotates, and carries the geometry of the
     // joint there.
     let turn = if awry { turn_between(kind, [&i, &j]) } else { None };
@@ -175,6 +127,66 @@ pub fn join(
         notes.taken(source.kind, source.name, source.at);
     }
     Some(m.joint(joint))
+}
+
+/// A joint between two markers, and how well these fit it.
+struct JointFit {
+    /// The joint, at marker j.
+    joint: Joint,
+    /// Point of body i at which the joint is assembled: displacements that the joint allows are zero in the design
+    /// configuration.
+    on_i: Vec3,
+    /// True if the markers are apart in directions in which the joint does not move.
+    open: bool,
+    /// True if the axes of the markers are misaligned.
+    awry: bool,
+}
+
+impl JointFit {
+    /// Gives a joint the axes of its markers; `apart` is the distance from which these are apart. `None` if axes that
+    /// must be perpendicular are parallel.
+    fn of(joint: Joint, kind: &str, [i, j]: [Marker; 2], apart: f64) -> Option<Self> {
+        let gap = j.pose.r - i.pose.r;
+        let across = gap - i.z() * i.z().dot(gap);
+        let is_turned = !(i.z().cross(j.z()).norm() <= AWRY);
+        let fit = Self { joint, on_i: i.pose.r, open: false, awry: false };
+        Some(match kind {
+            "spherical" => Self { open: gap.norm() > apart, ..fit },
+            "revolute" => {
+                let joint = fit.joint.along(i.z());
+                Self { joint, open: gap.norm() > apart, awry: is_turned, ..fit }
+            }
+            "translational" | "cylindrical" | "screw" | "inline" => Self {
+                joint: fit.joint.along(i.z()),
+                on_i: j.pose.r - across,
+                open: across.norm() > apart,
+                awry: kind != "inline" && is_turned,
+            },
+            "planar" | "inplane" => Self {
+                joint: fit.joint.with_axes(i.z(), i.x()),
+                on_i: i.pose.r + across,
+                open: (gap - across).norm() > apart,
+                awry: kind == "planar" && is_turned,
+            },
+            "parallel" => Self { joint: fit.joint.along(i.z()), awry: is_turned, ..fit },
+            "universal" | "dot1" => {
+                let (a, b) = (i.z(), j.z());
+                // Axes that are parallel but for round-off leave the direction of the cross open.
+                let square = (b - a * a.dot(b)).unit().filter(|_| is_turned)?;
+                Self {
+                    joint: fit.joint.with_axes(a, square),
+                    open: kind == "universal" && gap.norm() > apart,
+                    awry: !has_perpendicular_axes([i, j]),
+                    ..fit
+                }
+            }
+            "constant_velocity" => {
+                let b = if i.z().dot(j.z()) < 0.0 { -j.z() } else { j.z() };
+                Self { joint: fit.joint.with_axes(i.z(), b), open: gap.norm() > apart, ..fit }
+            }
+            _ => fit,
+        })
+    }
 }
 
 /// Returns the rotation of body j that aligns the axes of a joint and preserves the angle about them; `None` if there

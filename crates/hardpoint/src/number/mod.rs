@@ -13,6 +13,7 @@
 //! derivatives of all three with respect to a design variable. Code written once over [`Real`] runs on each of them. A
 //! [`Function`] of one number is defined once, with its name and its derivatives.
 
+mod array;
 mod dual;
 mod function;
 mod interval;
@@ -21,6 +22,7 @@ mod real;
 pub(crate) mod record;
 mod taylor;
 
+pub(crate) use array::{array, both, each};
 pub use dual::Dual;
 pub use function::Function;
 pub use interval::Interval;
@@ -28,28 +30,3 @@ pub use jet::{Jet, Rates};
 pub use real::Real;
 pub(crate) use taylor::degrees;
 pub use taylor::{Exponents, Taylor};
-
-/// An array of at least one number, by index: `std::array::from_fn`, inlined everywhere.
-#[inline(always)]
-pub(crate) fn array<T: Copy, const N: usize>(number: impl Fn(usize) -> T) -> [T; N] {
-    let mut out = [number(0); N];
-    for k in 1..N {
-        out[k] = number(k);
-    }
-    out
-}
-
-/// A function of every number of an array: `map`, inlined everywhere.
-#[inline(always)]
-pub(crate) fn each<T: Copy, U: Copy, const N: usize>(of: &[T; N], function: impl Fn(T) -> U) -> [U; N] {
-    array(
-        #[inline(always)]
-        |k| function(of[k]),
-    )
-}
-
-/// A function of both parts of a pair: `map`, inlined everywhere.
-#[inline(always)]
-pub(crate) fn both<T, U>([first, second]: [T; 2], mut function: impl FnMut(T) -> U) -> [U; 2] {
-    [function(first), function(second)]
-}
