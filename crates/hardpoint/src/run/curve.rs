@@ -381,6 +381,11 @@ impl<T: Real> SampledCurve<'_, T> {
         }
     }
 
+    /// True if all values in interval k are farther than this from `at`.
+    fn is_apart(&self, k: usize, at: f64, far: f64) -> bool {
+        self.bound(k, 1.0) < at - far || self.bound(k, -1.0) < -at - far
+    }
+
     /// Bernstein coefficients of the polynomial of interval k, the inner ones of a cubic twice; `None` next to a kink
     /// or a gap. Near a kink those of the square of the distance from it.
     fn bernstein(&self, k: usize, fold: Option<Fold>) -> Option<[f64; 6]> {
@@ -790,6 +795,9 @@ pub(super) fn crossings<'c, T: Real>(
                 .map(|t| (k, t))
                 .collect();
         };
+        if x.is_apart(k, at, NEAR_A_TURN * farthest) {
+            return Vec::new();
+        }
         let is_at = |end: usize| (x.values[end][0].value() - at).abs() <= THERE * farthest;
         let turns_at = |t: f64| {
             let miss = (x.number(k, t) - at).abs();
@@ -829,7 +837,8 @@ fn crossing_time<T: Real>(
     at: f64,
 ) -> Option<f64> {
     let Some(x) = x else { return (low <= at && at <= high).then_some(at) };
-    let miss = |t: f64| x.number(k, t) - at;
+    let polynomial = x.polynomial(k);
+    let miss = |t: f64| polynomial.at(T::constant(t))[0].value() - at;
     if !(miss(low) * miss(high) <= 0.0) {
         return None;
     }
