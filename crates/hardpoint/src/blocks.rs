@@ -49,6 +49,43 @@ pub(crate) struct Blocks {
     place: BlockLayout,
 }
 
+/// Row of results that are merged from two storages.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum MergedRow {
+    Own(usize),
+    Added(usize),
+}
+
+/// Rows of two storages in the order of their times. Of equal times, that of the own storage counts.
+pub(crate) fn merged_rows(own: &[f64], added: &[f64]) -> Vec<MergedRow> {
+    let time = |row: &MergedRow| match *row {
+        MergedRow::Own(k) => own[k],
+        MergedRow::Added(k) => added[k],
+    };
+    let all = (0..own.len()).map(MergedRow::Own).chain((0..added.len()).map(MergedRow::Added));
+    let mut rows: Vec<MergedRow> = all.collect();
+    rows.sort_by(|a, b| time(a).total_cmp(&time(b)));
+    rows.dedup_by(|b, a| time(b) == time(a));
+    rows
+}
+
+/// Rows that are added, each with its row in the storage that it is from.
+pub(crate) fn added_rows(rows: &[MergedRow]) -> impl Iterator<Item = (usize, usize)> {
+    rows.iter().enumerate().filter_map(|(k, row)| match *row {
+        MergedRow::Own(_) => None,
+        MergedRow::Added(from) => Some((k, from)),
+    })
+}
+
+/// Values of two lists, `width` of them per row, in this order of rows.
+pub(crate) fn merged<T: Copy>(own: &[T], added: &[T], width: usize, rows: &[MergedRow]) -> Vec<T> {
+    let row = |row: &MergedRow| match *row {
+        MergedRow::Own(k) => &own[k * width..][..width],
+        MergedRow::Added(k) => &added[k * width..][..width],
+    };
+    rows.iter().flat_map(row).copied().collect()
+}
+
 /// Layout of the storage.
 #[derive(Clone, Debug)]
 enum BlockLayout {
@@ -179,6 +216,32 @@ impl Blocks {
     pub fn copy(&mut self, k: usize, from: &Self, j: usize) {
         self.width = from.width;
         self.set(k, 0, from.row(j).all());
+    }
+
+    /// Inserts values of another storage with the same width, in this order of rows.
+    pub fn merge(&mut self, added: &Self, rows: &[MergedRow]) {
+        self.spread(rows);
+        for (k, from) in added_rows(rows) {
+            self.set(k, 0, added.row(from).all());
+        }
+    }
+
+    /// Moves the values of this storage to where they are in this order of rows; others are undefined.
+    pub fn spread(&mut self, rows: &[MergedRow]) {
+        let width = self.width;
+        // The last ones first, since all move towards the end.
+        for (k, row) in rows.iter().enumerate().rev() {
+            let MergedRow::Own(from) = *row else { continue };
+            if from == k {
+                return;
+            }
+            self.block_mut(k);
+            let lines = self.times_mut();
+            for column in 0..width {
+                let x = lines[from / LANES * width + column].0[from % LANES];
+                lines[k / LANES * width + column].0[k % LANES] = x;
+            }
+        }
     }
 
     /// Keeps every second one of the first `steps` output times.

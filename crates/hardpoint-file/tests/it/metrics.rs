@@ -687,3 +687,61 @@ fn units_of_targets_in_files_are_those_of_the_measure_and_its_abscissa() {
         assert!(found.contains("HP0112") && found.contains(expected), "{csv}: {found}");
     }
 }
+
+/// A crank and a follower that turn by more than three turns.
+const DOUBLE_CRANK: &str = r#"
+name = "double crank"
+units = { length = "mm", angle = "deg" }
+hardpoints = { A = [0, 0, 0], B = [0, 100, 0], C = [85, 125, 0], D = [30, 0, 0] }
+bodies = { crank = {}, coupler = {}, follower = {} }
+joints.A = { type = "revolute", bodies = ["ground", "crank"], at = "A", axis = "z" }
+joints.B = { type = "revolute", bodies = ["crank", "coupler"], at = "B", axis = "z" }
+joints.C = { type = "revolute", bodies = ["coupler", "follower"], at = "C", axis = "z" }
+joints.D = { type = "revolute", bodies = ["ground", "follower"], at = "D", axis = "z" }
+drivers.motor = { joint = "A", law = "t*180/pi" }
+design.D = { move = "D", along = "x" }
+points.C = { body = "follower", at = "C" }
+measures.speed = { type = "velocity", point = "C", along = "x" }
+metrics.fastest = { of = "speed", take = "max" }
+metrics.turned = { of = "turn", take = "integral" }
+time = { end = 20, steps = 150 }
+
+[measures.turn]
+type = "angle"
+from = [{ body = "ground", at = "D" }, { body = "ground", at = "C" }]
+to = [{ body = "follower", at = "D" }, { body = "follower", at = "C" }]
+about = "z"
+"#;
+
+/// The extremum of the speed adds times, which are inserted into the curve of the angle with all of its turns.
+#[test]
+fn angles_at_inserted_times_have_the_turns_of_the_motion() {
+    let of = |steps: &str| {
+        let file = parsed(&DOUBLE_CRANK.replace("steps = 150", steps));
+        metrics(&file.model, &Analysis::new(&file.model).unwrap().run())
+    };
+    for (found, exact) in of("steps = 150").iter().zip(of("steps = 2400")) {
+        let (value, expected) = (found.value.unwrap(), exact.value.unwrap());
+        assert!((value - expected).abs() <= 1e-7 * expected.abs(), "{value} {expected}");
+        assert!((found.d[0] - exact.d[0]).abs() <= 1e-4 * exact.d[0].abs(), "{:?} {:?}", found.d, exact.d);
+    }
+}
+
+/// Metrics at wheel travels between the output times add a few times, and not the whole motion once more.
+#[test]
+fn times_that_metrics_add_are_solved_by_themselves() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/front_axle.toml");
+    let model = parsed(&std::fs::read_to_string(path).unwrap()).model;
+    let analysis = Analysis::new(&model).unwrap();
+    for run in [Run::new(), Run::new().without_sensitivities()] {
+        let mut solved = 0;
+        let counting = |_| {
+            solved += 1;
+            std::ops::ControlFlow::Continue(())
+        };
+        let solution = analysis.solve(run.progress(counting));
+        assert!(metrics(&model, &solution).iter().all(|metric| metric.value.is_some()));
+        let outputs = model.times.len();
+        assert!((outputs..outputs + outputs / 2).contains(&solved), "{solved} of {outputs}");
+    }
+}

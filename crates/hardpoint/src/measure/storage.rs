@@ -2,7 +2,7 @@
 
 use hardpoint_tape::{LANES, Lanes};
 
-use crate::blocks::Blocks;
+use crate::blocks::{Blocks, MergedRow, added_rows};
 use crate::model::{Dimension, KnownOrders, Model, OutputSource, PointId, VariableId};
 use crate::number::array;
 
@@ -195,6 +195,22 @@ impl MeasureResults {
                 self.set_d(row, b, m, from.d(k, b, column));
             }
         }
+    }
+
+    /// Inserts output times of other results of the same outputs and variables, in this order of rows.
+    pub(crate) fn insert(&mut self, added: &Self, rows: &[MergedRow]) {
+        self.values.merge(&added.values, rows);
+        // Derivatives may have other positions there.
+        self.d.spread(rows);
+        for (k, from) in added_rows(rows) {
+            for m in 0..self.outputs.len() {
+                for b in (0..self.variables).map(VariableId) {
+                    self.set_d(k, b, m, added.d(from, b, m));
+                }
+            }
+        }
+        self.steps = rows.len();
+        self.by_formula += added.by_formula;
     }
 
     /// Drops every second output time.

@@ -16,6 +16,7 @@ pub(crate) mod driver_box;
 pub(crate) mod execution;
 mod gap;
 mod guard;
+pub(crate) mod inner_step;
 pub(crate) mod jerk;
 pub(crate) mod kinematics;
 pub(crate) mod level;

@@ -133,6 +133,16 @@ impl Predictor {
         self.count = 0;
     }
 
+    /// Number of channels.
+    pub fn len(&self) -> usize {
+        self.channels.len()
+    }
+
+    /// Value and derivatives of every channel at the position added last.
+    pub fn newest(&self) -> impl Iterator<Item = [f64; ORDERS]> {
+        self.values[0].iter().copied()
+    }
+
     /// Number of positions that the prediction uses.
     pub fn known(&self) -> usize {
         self.count

@@ -4,7 +4,7 @@ use super::execution::StepMethod;
 use super::gap::Assembly;
 use super::kinematics::State;
 use super::margin::Margin;
-use crate::blocks::{Blocks, ResultRow};
+use crate::blocks::{Blocks, MergedRow, ResultRow, merged};
 use crate::model::{BodyId, JointId, Model};
 use crate::space::{Mat3, Pose, Quat, Real, Vec3};
 
@@ -114,6 +114,9 @@ pub struct Motion {
     pub(crate) states: Blocks,
     /// Coordinates of the tree.
     pub(crate) coordinates: Blocks,
+    /// Value and derivatives of every predicted quantity, from which positions between output times are predicted;
+    /// `None` if they do not determine the path there, or if nothing is asked of it.
+    pub(crate) channels: Option<Blocks>,
     /// Per output time: distance from a singular position; empty if only the bodies were requested.
     pub margins: Vec<Margin>,
     /// Assembly before the motion, if the mechanism was open in the design configuration.
@@ -231,6 +234,26 @@ impl Motion {
     pub(crate) fn fastest(&self, body: BodyId) -> f64 {
         let Some(others) = body.0.checked_sub(1) else { return 0.0 };
         self.states.largest_square(BodyState::NUMBERS * others + BodyState::OMEGA, self.len()).sqrt()
+    }
+
+    /// Angles counted along the path at output time k.
+    pub(crate) fn counted_at(&self, k: usize) -> &[f64] {
+        let width = self.counted.len() / self.len();
+        &self.counted[k * width..][..width]
+    }
+
+    /// Inserts output times of another motion of the same design, in this order of rows.
+    pub(crate) fn insert(&mut self, added: &Self, rows: &[MergedRow]) {
+        self.states.merge(&added.states, rows);
+        self.coordinates.merge(&added.coordinates, rows);
+        match (&mut self.channels, &added.channels) {
+            (Some(channels), Some(added)) => channels.merge(added, rows),
+            (channels, _) => *channels = None,
+        }
+        let steps = self.len();
+        self.margins = merged(&self.margins, &added.margins, self.margins.len() / steps, rows);
+        self.counted = merged(&self.counted, &added.counted, self.counted.len() / steps, rows);
+        self.times = merged(&self.times, &added.times, 1, rows);
     }
 
     /// States of all bodies at output time k.

@@ -5,6 +5,7 @@
 //! | step | advances | prediction | correction |
 //! |---|---|---|---|
 //! | `OutputStep` | one design to the next output time | Hermite interpolation (27) | kernel |
+//! | `InnerStep` | one design to a time between two that are solved | Hermite interpolation (27) | kernel |
 //! | `PathStep` | one design along a path, between output times | series along the drivers (22) | kernel |
 //! | `TimeStep` | one design over up to eight output times | Hermite interpolation (27) | program |
 //! | `DesignStep` | eight designs to the next output time | Hermite interpolation (27) | program |

@@ -77,6 +77,11 @@ impl<'m> Stepper<'m> {
         self.lookahead.is_known = false;
     }
 
+    /// Value and derivatives of every predicted quantity at the accepted position.
+    pub fn channels(&self) -> impl Iterator<Item = f64> {
+        self.predictor.newest().flatten()
+    }
+
     /// True if something is known of the path ahead.
     #[inline(always)]
     pub(super) fn knows_the_path(&self) -> bool {

@@ -114,6 +114,11 @@ impl Tape {
         }
     }
 
+    /// Writes value, first and second derivative of every channel in all lanes.
+    pub fn write_channels(&self, out: &mut [Lanes]) {
+        out.copy_from_slice(bytemuck::cast_slice(&self.outputs[..out.len()]));
+    }
+
     /// Purpose of the program.
     pub fn purpose(&self) -> Purpose {
         self.program.purpose

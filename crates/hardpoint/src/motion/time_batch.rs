@@ -24,7 +24,7 @@ use super::stepper::Stepper;
 use super::tape::{SolveQuality, Tape, all_within, largest};
 
 /// Maximum first correction (rad, or sizes) after a prediction by all stored positions.
-const FORECAST_TRUST: f64 = 1e-3;
+pub(super) const FORECAST_TRUST: f64 = 1e-3;
 /// Minimum and maximum number of steps that are solved one by one after a failure.
 const PAUSE: [usize; 2] = [LANES, 64];
 /// Minimum number of steps of a batch.

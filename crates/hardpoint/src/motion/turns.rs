@@ -158,6 +158,21 @@ impl<'m> TurnCounter<'m> {
         self.is_slow(h, moved)
     }
 
+    /// Returns true if the turns of all angles are unambiguous at a position between two others with these angles.
+    pub fn is_between(&mut self, state: &State<f64>, ends: [&[f64]; 2]) -> bool {
+        self.look(&|b| BodyState::of(state, b));
+        let [before, after] = ends;
+        if before.len() != self.len() || after.len() != self.len() {
+            return false;
+        }
+        for ((ahead, before), [now, ..]) in self.ahead.iter_mut().zip(before).zip(&self.found) {
+            *ahead = counted(*now, *before, *before);
+        }
+        let is_far =
+            |end: &[f64]| self.ahead.iter().zip(end).any(|(now, end)| (now - end).abs() > TURN_TRUST);
+        !is_far(before) && !is_far(after)
+    }
+
     /// Checks all these output times at once, from the states of all bodies in lanes; `before` is the time of the
     /// accepted position.
     pub fn are_even(

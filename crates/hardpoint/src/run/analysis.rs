@@ -9,7 +9,9 @@ use crate::equilibrium::{OpenPosition, Released, release, release_at};
 use crate::law::Law;
 use crate::load::{self, RecordedLoads};
 use crate::measure::{self, MeasureFormulas, MeasureResults, Slopes, StepValues};
-use crate::model::{BodyId, Driver, DriverId, JointLimit, MeasureKind, Model, SharedModel, StartPlacement};
+use crate::model::{
+    BodyId, ChangePointPolicy, Driver, DriverId, JointLimit, MeasureKind, Model, SharedModel, StartPlacement,
+};
 use crate::motion::advance;
 use crate::motion::execution::{Cache, Runnable};
 use crate::motion::parts::PlanGeometry;
@@ -449,11 +451,25 @@ impl<'m> Analysis<'m> {
         }
     }
 
+    /// True if the positions of a motion of this design are recorded, since metrics may ask for times between them, and
+    /// two positions determine those in between.
+    pub(super) fn records_channels(&self, design: &PreparedDesign) -> bool {
+        let (model, topology) = (self.solved_model(), &self.topology);
+        design.scope.measures
+            && design.needs.is_none()
+            && self.equilibrium.is_none()
+            && !model.metrics.is_empty()
+            && model.at_change_points == ChangePointPolicy::Stop
+            && topology.coupler_terms.is_empty()
+            && topology.contacts().next().is_none()
+    }
+
     /// Clears a motion and reserves memory for `steps` output times.
     pub(super) fn make_room(&self, motion: &mut Motion, steps: usize) {
         motion.bodies = self.model().bodies.len();
         motion.states.shape(BodyState::NUMBERS * (motion.bodies - 1), steps);
         motion.coordinates.shape(self.topology.coordinates.len(), steps);
+        motion.channels = None;
         motion.times.clear();
         motion.times.reserve(steps);
         motion.margins.clear();

@@ -3,8 +3,9 @@
 //! A metric is a property of the curve, not of its output times. If these are too few to resolve the curve, the motion
 //! is solved again at more times, so close that no driver moves far between two of them and that each law is a
 //! polynomial there. Then times are added at which metrics are evaluated, or in the middle of intervals in which an
-//! integral is inaccurate. At a solved time a value is exact, and so is its derivative: the time of an extremum depends
-//! on the design, but this does not change its value, `dm/db = dy/db` at `t*`.
+//! integral is inaccurate: these are solved from the positions on both sides, and inserted. At a solved time a value is
+//! exact, and so is its derivative: the time of an extremum depends on the design, but this does not change its value,
+//! `dm/db = dy/db` at `t*`.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -40,6 +41,8 @@ const MOST_HALVINGS: u32 = 40;
 const MOST_PASSES: usize = 4;
 /// ... and of passes that locate kinks, and sharp extrema without rates.
 const MOST_FOR_EXTREMA: usize = 8;
+/// Inverse part of the times of a motion above which added times are solved with all others, eight at once.
+const MOST_ADDED: usize = 4;
 /// Memory for the motion between output times.
 const BYTES: usize = 128 << 20;
 
@@ -60,9 +63,11 @@ fn is_exact(model: &Model, metric: &Metric) -> bool {
     model.type_of(metric.of) == "clearance"
 }
 
-/// Drops the times to be added that are those of others within round-off: several metrics may ask for the same time.
+/// Drops the times to be added that are outside the motion, or those of others within round-off: several metrics may
+/// ask for the same time.
 fn keep_apart(add: &mut Vec<f64>, times: &[f64]) {
     let [start, end] = [times[0], times[times.len() - 1]];
+    add.retain(|t| start < *t && *t < end);
     let is_same = |a: f64, b: f64| (a - b).abs() <= 0.1 * JUST_BEFORE * (end - start);
     add.sort_by(f64::total_cmp);
     add.dedup_by(|b, a| is_same(*a, *b));
@@ -129,34 +134,28 @@ impl Analysis<'_> {
         {
             return;
         }
-        let mut times = self.times_between().to_vec();
-        let mut found: Option<Solution> = None;
-        let mut located: Option<Vec<OutputSource>> = None;
         let is_whole = solution.motion.len() == model.times.len();
         if !is_whole && model.times.len() > Footprint::of(model, true).rows(BYTES) {
             return;
         }
-        if times.len() > model.times.len() {
-            times.extend(model.metrics.iter().flat_map(window_times));
-        }
         // All output times have been reported as solved before.
         let mut go_on =
             |_: Progress| progress(Progress { done: model.times.len() - 1, total: model.times.len() });
+        let mut found = None;
+        let are_finer = self.times_between().len() > model.times.len();
+        if are_finer || !is_whole {
+            let of_metrics = model.metrics.iter().filter(|_| are_finer).flat_map(window_times);
+            let times = self.times_between().iter().copied().chain(of_metrics).collect();
+            // Which times are needed depends on values only; results at times that are inserted have derivatives at
+            // once.
+            let sensitivities = design.scope.sensitivities && self.records_channels(design);
+            found = Some(self.solve_at(times, design, sensitivities, &mut go_on));
+        }
+        let mut located: Option<Vec<OutputSource>> = None;
         let mut passes = 0;
         loop {
-            if times.len() > model.times.len() || !is_whole {
-                let [start, end] = [model.times[0], model.times[model.times.len() - 1]];
-                times.retain(|t| start <= *t && *t <= end);
-                times.sort_by(f64::total_cmp);
-                times.dedup();
-                let finer = self.at_times(times.clone());
-                // Which times are needed depends on values only.
-                let scope = Scope { sensitivities: false, ..design.scope };
-                let next = finer.walked(&design.values, scope, &mut go_on);
-                if next.stop.is_some() {
-                    return self.end_where(&next, design, &mut go_on, solution);
-                }
-                found = Some(next);
+            if let Some(stopped) = found.as_ref().filter(|found| found.stop.is_some()) {
+                return self.end_where(stopped, design, &mut go_on, solution);
             }
             let now = found.as_ref().unwrap_or(solution);
             let mut add = Vec::new();
@@ -178,18 +177,24 @@ impl Analysis<'_> {
                 add.extend(unresolved_extrema(now, metric));
                 add.extend(unresolved_corners(now, metric));
             }
-            keep_apart(&mut add, &times);
+            keep_apart(&mut add, &now.motion.times);
             if add.is_empty() || passes == MOST_FOR_EXTREMA {
                 break;
             }
-            times.extend(add);
+            found = Some(match self.solve_added(now, &add, design, &mut go_on) {
+                Some(added) => {
+                    let mut all = found.take().unwrap_or_else(|| solution.clone());
+                    all.insert(&added);
+                    all
+                }
+                None => self.solve_at([&now.motion.times, &add[..]].concat(), design, false, &mut go_on),
+            });
         }
         solution.located = located.unwrap_or_default();
-        if design.scope.sensitivities
-            && let Some(values) = &found
+        if !design.fields.is_empty()
+            && let Some(values) = found.as_ref().filter(|found| found.sensitivities.variables == 0)
         {
-            let finer = self.at_times(values.motion.times.clone());
-            let all = finer.walked(&design.values, design.scope, &mut go_on);
+            let all = self.solve_at(values.motion.times.clone(), design, true, &mut go_on);
             if all.stop.is_some() {
                 return self.end_where(&all, design, &mut go_on, solution);
             }
@@ -197,6 +202,46 @@ impl Analysis<'_> {
         }
         let finer = found.map(|found| self.with_unlocated_times(found, &solution.located));
         solution.between = finer.map(Arc::new);
+    }
+
+    /// Solves the motion of a design at all these times from its start on.
+    fn solve_at(
+        &self,
+        mut times: Vec<f64>,
+        design: &PreparedDesign,
+        sensitivities: bool,
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Solution {
+        let [start, end] = [self.model().times[0], self.model().times[self.model().times.len() - 1]];
+        times.retain(|t| start <= *t && *t <= end);
+        times.sort_by(f64::total_cmp);
+        times.dedup();
+        let finer = self.at_times(times);
+        let design = finer.prepare(&design.values, Scope { sensitivities, ..design.scope });
+        let mut found = Solution::default();
+        finer.walk(&design, finer.model().times.len(), progress, &mut found, &mut |_, _| ());
+        found
+    }
+
+    /// Solves the motion of a design at times between those of a solution, from the positions on both sides. `None` if
+    /// these do not determine it, or if so many times are solved faster with all others.
+    fn solve_added(
+        &self,
+        known: &Solution,
+        add: &[f64],
+        design: &PreparedDesign,
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Option<Solution> {
+        if known.motion.channels.is_none() || MOST_ADDED * add.len() > known.motion.len() {
+            return None;
+        }
+        // The branch is that of the first time.
+        let finer = self.at_times(known.motion.times[..1].iter().chain(add).copied().collect());
+        let sensitivities = known.sensitivities.variables > 0;
+        let design = finer.prepare(&design.values, Scope { sensitivities, ..design.scope });
+        let (rows, mut found) = (finer.model().times.len(), Solution::default());
+        finer.walk_between(Some(&known.motion), &design, rows, progress, &mut found, &mut |_, _| ());
+        found.stop.is_none().then_some(found)
     }
 
     /// Records which times of the motion at more times depend on the laws of the nominal design alone.
@@ -221,22 +266,9 @@ impl Analysis<'_> {
         }
         // The last of several windows is complete as it is.
         if solution.motion.len() == self.model().times.len() {
-            *solution = self.at_times(times).walked(&design.values, design.scope, progress);
+            *solution = self.solve_at(times, design, design.scope.sensitivities, progress);
         }
         solution.stop.clone_from(&finer.stop);
-    }
-
-    /// The results of a design at all output times.
-    fn walked(
-        &self,
-        design: &[f64],
-        scope: Scope,
-        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-    ) -> Solution {
-        let mut found = Solution::default();
-        let design = self.prepare(design, scope);
-        self.walk(&design, self.model().times.len(), progress, &mut found, &mut |_, _| ());
-        found
     }
 
     /// Solves a prepared design for its metrics: values at all output times, and the derivatives that the metrics

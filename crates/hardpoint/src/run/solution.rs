@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::blocks::merged_rows;
 use crate::measure::MeasureResults;
 use crate::model::{BodyId, OutputSource};
 use crate::motion::{BodyState, Motion, SolverStatistics, Stop};
@@ -28,6 +29,14 @@ pub struct Solution {
 }
 
 impl Solution {
+    /// Inserts output times of another solution of the same design.
+    pub(crate) fn insert(&mut self, added: &Self) {
+        let rows = merged_rows(&self.motion.times, &added.motion.times);
+        self.motion.insert(&added.motion, &rows);
+        self.sensitivities.derivatives.merge(&added.sensitivities.derivatives, &rows);
+        self.measured.insert(&added.measured, &rows);
+    }
+
     /// State of a body at output time k.
     pub fn body(&self, k: usize, body: BodyId) -> BodyState {
         self.motion.at(k).body(body.0)

@@ -11,13 +11,14 @@ use crate::law::Law;
 use crate::load::LoadSolver;
 use crate::measure::PathAngles;
 use crate::model::BodyId;
+use crate::motion::inner_step::advance_between;
 use crate::motion::parts::PlanGeometry;
 use crate::motion::step_program::Purpose;
 use crate::motion::stepper::Stepper;
 use crate::motion::tape::Tape;
 use crate::motion::time_batch::TimeBatch;
 use crate::motion::turns::TurnCounter;
-use crate::motion::{BodyState, Stop, StopKind, advance, assembly};
+use crate::motion::{BodyState, Motion, Stop, StopKind, advance, assembly};
 use crate::sensitivity::{Admissibility, BodySensitivity, JointDefect, SensitivitySolver};
 
 use super::analysis::Analysis;
@@ -131,6 +132,8 @@ pub(crate) struct Walk<'a> {
     plan: Plan<'a>,
     pub one: Stepper<'a>,
     batch: TimeBatch<'a>,
+    /// Motion of the design between whose times all others than the first are.
+    known: Option<&'a Motion>,
     /// `None` if no sensitivities are requested.
     pub solver: Option<SensitivitySolver>,
     /// `None` if no loads are requested.
@@ -185,6 +188,7 @@ impl<'a> Walk<'a> {
             plan: Plan { analysis, design, number: 0 },
             one,
             batch: TimeBatch::new(None, &[], None),
+            known: None,
             solver: (!fields.is_empty()).then(solver),
             loads: None,
             loads_of: None,
@@ -200,6 +204,11 @@ impl<'a> Walk<'a> {
     /// The same solver with loads, by the solver that `of` makes for each plan.
     pub fn with_loads(self, of: impl Fn(Plan<'a>) -> LoadSolver<'a> + 'a) -> Self {
         Self { loads: Some(of(self.plan)), loads_of: Some(Box::new(of)), ..self }
+    }
+
+    /// The same solver for times between those of a motion of the same design.
+    pub fn between(self, known: &'a Motion) -> Self {
+        Self { known: Some(known), ..self }
     }
 
     /// Solver that uses programs, one output time per lane, if that is possible and saves time.
@@ -299,7 +308,10 @@ impl<'a> Walk<'a> {
                 }
             }
             None if k == 0 => advance::start(&mut self.one, t),
-            None => advance::advance(&mut self.one, t),
+            None => match self.known {
+                Some(known) => advance_between(&mut self.one, known, t),
+                None => advance::advance(&mut self.one, t),
+            },
         };
         step.map_err(|mut stop| {
             if let (StopKind::DoesNotAssemble, Some(block)) = (stop.kind, stop.block) {

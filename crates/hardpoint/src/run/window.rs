@@ -7,6 +7,7 @@ use std::ops::{ControlFlow, Range};
 
 use hardpoint_tape::LANES;
 
+use crate::blocks::Blocks;
 use crate::equilibrium::{Along, Curvatures};
 use crate::load::{Compliances, LoadSolver, load_measures};
 use crate::measure::{self, Slopes, StepValues};
@@ -93,6 +94,20 @@ impl Analysis<'_> {
         solution: &mut Solution,
         each: &mut dyn FnMut(usize, &Solution),
     ) -> usize {
+        self.walk_between(None, design, rows, progress, solution, each)
+    }
+
+    /// Solves all output times like [`Analysis::walk`]; all but the first one from the positions beside them in a
+    /// `known` motion of the design, if there is one.
+    pub(super) fn walk_between(
+        &self,
+        known: Option<&Motion>,
+        design: &PreparedDesign,
+        rows: usize,
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+        solution: &mut Solution,
+        each: &mut dyn FnMut(usize, &Solution),
+    ) -> usize {
         let (model, topology, measures) = (self.model(), self.topology(), design.scope.measures);
         let sensitive = !design.fields.is_empty();
         solution.between = None;
@@ -104,9 +119,10 @@ impl Analysis<'_> {
         let loads = measures && (self.asks_for_loads() || compliances.is_some());
         let mut workspaces =
             PerPlan::new(self, design, |plan| Workspaces::of(plan, self, measures, sensitive));
-        let mut walk = match measures && self.needs_kernel().is_some() {
-            true => Walk::new(self, design, wanted),
-            false => Walk::by_programs(
+        let mut walk = match known {
+            Some(known) => Walk::new(self, design, wanted).between(known),
+            None if measures && self.needs_kernel().is_some() => Walk::new(self, design, wanted),
+            None => Walk::by_programs(
                 self,
                 design,
                 wanted,
@@ -119,6 +135,11 @@ impl Analysis<'_> {
         let rows = usize::min(rows, model.times.len());
         let slopes = StepValues::new(model, variables, rows);
         let mut window = Window::begin(self, walk.solver.as_ref(), rows, slopes, solution);
+        if rows == model.times.len() && self.records_channels(design) {
+            let mut channels = Blocks::default();
+            channels.shape(walk.one.channels().count(), rows);
+            window.motion.channels = Some(channels);
+        }
         let stop = walk.all(&mut window, progress, |window, solved, count, solver| {
             let times = &model.times[window.done..window.done + count];
             let k = window.done - window.first;
@@ -152,6 +173,9 @@ impl Analysis<'_> {
                         }
                     }
                     window.motion.coordinates.set(k, 0, one.mechanism.coordinates(coordinates));
+                    if let Some(channels) = &mut window.motion.channels {
+                        channels.set(k, 0, one.channels());
+                    }
                     if let Some(turns) = &one.turns {
                         window.motion.counted.extend_from_slice(&turns.values);
                     }
@@ -161,6 +185,9 @@ impl Analysis<'_> {
                 }
                 SolvedSteps::Batch(tape, lanes, turns) => {
                     tape.coordinates(topology, window.motion.coordinates.block_mut(k));
+                    if let Some(channels) = &mut window.motion.channels {
+                        tape.write_channels(channels.block_mut(k));
+                    }
                     window.add_batch(tape, lanes, turns, measures);
                 }
             }
@@ -172,6 +199,10 @@ impl Analysis<'_> {
                 window.open(self, rows, solution);
             }
         });
+        if walk.one.mechanism.selections > 0 {
+            // Other rows may be selected on both sides of a position.
+            window.motion.channels = None;
+        }
         window.motion.effort = walk.one.effort;
         window.motion.solved_by = Some(self.solved_by(measures));
         window.motion.assembly = walk.one.assembly.take();
