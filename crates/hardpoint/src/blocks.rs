@@ -293,6 +293,18 @@ mod tests {
                 assert_eq!([2, 3, 4].map(|c| blocks.row(k).get(c)), [2, 3, 4].map(|c| number(k, c)));
             }
         }
+        // Output times 3, 7 and 19 between 0, 1, 2 ...
+        let rows = merged_rows(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0], &[0.0, 0.5, 4.5, 9.0]);
+        let mut all = Blocks::default();
+        all.shape(5, 8);
+        (0..8).for_each(|k| all.copy(k, &one_by_one, k));
+        let mut added = Blocks::default();
+        added.shape(5, 4);
+        [11, 3, 7, 19].into_iter().enumerate().for_each(|(k, of)| added.copy(k, &one_by_one, of));
+        all.merge(&added, &rows);
+        let expected = [0, 3, 1, 2, 3, 4, 7, 5, 6, 7, 19];
+        assert_eq!(rows.len(), expected.len());
+        assert!(expected.iter().enumerate().all(|(k, of)| all.row(k).get(4) == number(*of, 4)));
         let mut kept = Blocks::default();
         kept.shape(5, 3);
         (0..11).for_each(|k| kept.copy(k, &one_by_one, k + 9));

@@ -41,8 +41,9 @@ const MOST_HALVINGS: u32 = 40;
 const MOST_PASSES: usize = 4;
 /// ... and of passes that locate kinks, and sharp extrema without rates.
 const MOST_FOR_EXTREMA: usize = 8;
-/// Inverse part of the times of a motion above which added times are solved with all others, eight at once.
-const MOST_ADDED: usize = 4;
+/// Minimum number of times of a motion per added time for which the latter are solved by themselves: all times together
+/// are solved eight at once.
+const FEWEST_PER_ADDED: usize = 4;
 /// Memory for the motion between output times.
 const BYTES: usize = 128 << 20;
 
@@ -232,7 +233,7 @@ impl Analysis<'_> {
         design: &PreparedDesign,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Option<Solution> {
-        if known.motion.channels.is_none() || MOST_ADDED * add.len() > known.motion.len() {
+        if known.motion.channels.is_none() || FEWEST_PER_ADDED * add.len() > known.motion.len() {
             return None;
         }
         // The branch is that of the first time.

@@ -41,8 +41,9 @@ pub fn metrics(model: &Model, solution: &Solution) -> Vec<MetricValue> {
 /// curve are `None`, because the rest of the curve is not known.
 pub fn metrics_beside(model: &Model, today: &Solution, other: &Solution) -> Vec<Option<f64>> {
     let whole = other.motion.len() >= today.motion.len();
-    let values = model.metrics.iter().zip(metrics(model, other));
-    values.map(|(metric, found)| found.value.filter(|_| whole || metric.take.is_local())).collect()
+    let values = model.metrics.iter().zip(metric_numbers(model, other));
+    let is_known = |metric: &Metric, value: f64| value.is_finite() && (whole || metric.take.is_local());
+    values.map(|(metric, found)| found.filter(|value| is_known(metric, *value))).collect()
 }
 
 /// True if a metric is known of a solution: one of the whole curve is not if the motion ended early, unless an end stop
