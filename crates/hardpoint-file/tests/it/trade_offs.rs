@@ -133,6 +133,20 @@ fn more_points_dominate_what_a_dense_front_does() {
     assert!(found.cost.designs - found.anchor_designs < 3 * 60, "{:?}", found.cost);
 }
 
+/// Designs of a front of 15 points with 10 variables and two limits: 1 % of the 10,500 with which NSGA-II has the same
+/// hypervolume (`docs/trade-off.md`).
+const FEW: usize = 105;
+
+#[test]
+fn a_front_of_fifteen_points_takes_few_designs() {
+    let text = include_str!("../../../../models/studies/wishbone_trade_off.toml");
+    let model = parse(text, "wishbone_trade_off.toml").unwrap_or_else(|e| panic!("{e}"));
+    let found = traded(&model, Some(15));
+    check(&found);
+    assert_eq!(found.points.len(), 15);
+    assert!(found.cost.designs < FEW, "{} designs", found.cost.designs);
+}
+
 #[test]
 fn a_front_that_bulges_towards_worse_designs_is_found_where_weighted_sums_find_its_ends_only() {
     let limits = r#"limits.away = { between = ["O", "P"], min = 50 }

@@ -34,7 +34,7 @@ pub use assessment::{DesignAssessment, FailedDesign, LIMIT_KEPT, judge};
 pub(crate) use assessment::{assess, failed_design, limit_scales};
 pub(crate) use optimality::BINDS;
 pub use optimality::{ActiveConstraint, Optimality};
-pub(crate) use problem::{Extremum, MET, Point, Problem};
+pub(crate) use problem::{Extremum, MET, Point, Problem, Rows};
 pub use request::{Overrides, Request, Selection};
 pub use result::{Iteration, Optimization, SearchResult, Status};
 pub(crate) use solver::Memory;

@@ -29,6 +29,8 @@ pub(crate) struct Problem<'m> {
     pub limits: Vec<(usize, Limited)>,
     /// Uses of the metrics of each motion.
     pub uses: Vec<Vec<MetricUse>>,
+    /// True if points have the residuals of their limits.
+    pub has_limit_residuals: bool,
 }
 
 /// A metric in one motion.
@@ -101,6 +103,8 @@ pub(crate) struct Point {
     pub limits: Vec<LimitRow>,
     /// Candidates for both ends of curves with a limited range.
     pub spreads: Vec<Spread>,
+    /// Residuals of limits on the root of a sum of squares, by the index in [`Problem::limits`].
+    pub limit_residuals: Vec<(usize, Rows)>,
     /// Values of the goals, in the order of [`Problem::goals`].
     pub goal_values: Vec<f64>,
     /// Values of the limits, in the order of [`Problem::limits`].
@@ -311,6 +315,7 @@ impl<'m> Problem<'m> {
             goals,
             limits,
             uses,
+            has_limit_residuals: false,
         }
     }
 
@@ -507,6 +512,15 @@ impl<'m> Problem<'m> {
         {
             push(value - most, d, true, true);
             return;
+        }
+        if self.has_limit_residuals
+            && let Some(entry) = entry
+        {
+            let (model, solution) = (self.motions.model(entry.motion), &found.solutions[entry.motion]);
+            if let Some(parts) = misfits(model, solution, &model.metrics[entry.metric]) {
+                let d = parts.d.iter().map(|d| self.searched(d)).collect();
+                point.limit_residuals.push((place, Rows { values: parts.values, d }));
+            }
         }
         // The time of a maximum varies with the design, so all candidates are kept within the limit.
         let parts = |extrema: &[f64], sign: f64| {

@@ -2,7 +2,7 @@
 
 use super::functions::{Criticality, Scale, State};
 use super::result::{FrontPoint, ON_FRONT, TradeOff};
-use super::scalarization::{Curvatures, Reference, Scalarization, Solved};
+use super::scalarization::{Curvatures, Reference, SHARP, SHARP_BETWEEN, Scalarization, Solved};
 use crate::optimize::{LIMIT_KEPT, Memory, assess, limit_scales};
 
 /// Range of a goal, relative to its change from the nominal design, below which it does not conflict with the others.
@@ -35,6 +35,12 @@ const SETTLED: f64 = 0.5;
 const ROUND_OFF: f64 = 1e-9;
 /// A neighbour takes part in an interpolation if its gap is at most this much wider.
 const ALIKE: f64 = 4.0;
+
+/// Optimum of a goal alone, as fractions of the bounds, with the secants that were learnt on the way.
+pub(super) struct Anchor {
+    pub x: Vec<f64>,
+    pub curvatures: Curvatures,
+}
 
 /// A found point.
 #[derive(Clone)]
@@ -122,19 +128,19 @@ impl<'p> Front<'p> {
     ///
     /// # Errors
     /// Returns the goal at whose optimum not all goals and limits can be evaluated.
-    pub fn new(
-        memory: &'p Memory<'p>,
-        anchors: Vec<Vec<f64>>,
-        nominal: Option<&State>,
-    ) -> Result<Self, usize> {
+    pub fn new(memory: &'p Memory<'p>, anchors: Vec<Anchor>, nominal: Option<&State>) -> Result<Self, usize> {
         let problem = memory.problem;
         let found = |x: &Vec<f64>| memory.at(x, |found| found.as_ref().ok().cloned());
-        let points = anchors.iter().enumerate().map(|(goal, x)| found(x).ok_or(goal));
+        let points = anchors.iter().enumerate().map(|(goal, anchor)| found(&anchor.x).ok_or(goal));
         let points: Vec<_> = points.collect::<Result<_, _>>()?;
-        let limit_scales = limit_scales(problem, &points[0]);
-        let states = anchors.into_iter().zip(points);
-        let states: Vec<State> =
-            states.map(|(x, point)| State::new(problem, &limit_scales, x, point)).collect();
+        let limit_scales = limit_scales(problem, nominal.map_or(&points[0], |state| &state.point));
+        let (states, secants): (Vec<State>, Vec<Curvatures>) = anchors
+            .into_iter()
+            .zip(points)
+            .map(|(Anchor { x, curvatures }, point)| {
+                (State::new(problem, &limit_scales, x, point), curvatures)
+            })
+            .unzip();
         let count = states.len();
         // Another search may have found a better optimum of a goal.
         let best = |goal: usize| {
@@ -156,7 +162,7 @@ impl<'p> Front<'p> {
             let mut weights = vec![0.0; count];
             weights[goal] = 1.0;
             let criticality = state.criticality(&scale, &[goal], &[]);
-            let curvatures = Curvatures::of_weights(&state, &scale, &weights);
+            let curvatures = Curvatures::of_weights(&state, &scale, &weights, secants[goal].clone());
             Node {
                 solved: Solved { state, criticality, curvatures },
                 anchor: Some(goal),
@@ -486,12 +492,17 @@ impl<'p> Front<'p> {
             let [from, to] = [&optimum, end].map(|s| s.state.scaled(&self.scale)[other]);
             from - to
         };
-        let (mut end, mut is_found) = (optimum.clone(), false);
-        for loss in END_LOSSES {
-            (end, is_found) = self.with_loss(&[kept], other, end, loss);
-            // With less loss it gains less.
-            if is_found && gain(&end) <= GAIN {
-                break;
+        // From the optimum the last loss is often within reach; otherwise it is reduced step by step.
+        let last = END_LOSSES[END_LOSSES.len() - 1];
+        let (mut end, mut is_found) = self.with_loss(&[kept], other, optimum.clone(), last);
+        if !is_found {
+            end = optimum.clone();
+            for loss in END_LOSSES {
+                (end, is_found) = self.with_loss(&[kept], other, end, loss);
+                // With less loss it gains less.
+                if is_found && gain(&end) <= GAIN {
+                    break;
+                }
             }
         }
         let designs = self.memory.cost.borrow().designs - before;
@@ -523,12 +534,13 @@ impl<'p> Front<'p> {
         let mut reference: Reference = vec![None; self.scale.zero.len()];
         kept.iter().for_each(|goal| reference[*goal] = Some([loss, 0.0]));
         reference[other] = Some([start.state.scaled(&self.scale)[other], 1.0]);
-        let solved = self.scalarization(reference, 1.0).solve(start.state.clone(), start.curvatures.clone());
+        let solved =
+            self.scalarization(reference, 1.0, SHARP).solve(start.state.clone(), start.curvatures.clone());
         let is_found = solved.as_ref().is_some_and(|s| s.criticality.residual <= ON_FRONT);
         (solved.unwrap_or(start), is_found)
     }
 
-    fn scalarization<'s>(&'s self, reference: Reference, near: f64) -> Scalarization<'s>
+    fn scalarization<'s>(&'s self, reference: Reference, near: f64, sharp: f64) -> Scalarization<'s>
     where
         'p: 's,
     {
@@ -538,6 +550,7 @@ impl<'p> Front<'p> {
             scale: &self.scale,
             reference,
             near,
+            sharp,
         }
     }
 
@@ -555,7 +568,7 @@ impl<'p> Front<'p> {
         let curvatures = Curvatures::between(&a.solved.curvatures, &b.solved.curvatures);
         let ends = [a, b].map(|n| &n.solved.state.x);
         let start = self.interpolated(side, k, middle);
-        self.solve(&self.scalarization(reference, NEAR * width), &start, ends, curvatures)
+        self.solve(&self.scalarization(reference, NEAR * width, SHARP_BETWEEN), &start, ends, curvatures)
     }
 
     /// Solves a scalar problem from a start, or else nearer to a known design.
@@ -634,7 +647,7 @@ impl<'p> Front<'p> {
                 let Some(nearest) = nearest.cloned() else { return };
                 let reference = reference.iter().map(|a| Some([*a, 1.0])).collect();
                 let found = self.solve(
-                    &self.scalarization(reference, NEAR / m as f64),
+                    &self.scalarization(reference, NEAR / m as f64, SHARP_BETWEEN),
                     &start,
                     [&nearest.solved.state.x; 2],
                     nearest.solved.curvatures.clone(),

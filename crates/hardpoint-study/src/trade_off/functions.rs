@@ -5,7 +5,10 @@
 //! largest of all candidates for an extremum, which have derivatives where it vanishes. Designs are fractions of the
 //! bounds.
 
-use crate::optimize::{BINDS, Extremum, MET, Point, Problem};
+use std::rc::Rc;
+
+use crate::optimize::{BINDS, Extremum, MET, Point, Problem, Rows};
+use hardpoint::linalg::folded_rows;
 use hardpoint_search::quadratic::non_negative;
 use hardpoint_search::{dot, norm};
 
@@ -40,6 +43,16 @@ pub(super) struct Function {
     pub value: f64,
     /// Gradient by fractions of the bounds.
     pub d: Vec<f64>,
+    /// Residuals of a function that is their norm, less a constant.
+    pub residuals: Option<Residuals>,
+}
+
+/// Residuals whose norm is a function, folded into one row for each variable and one more.
+#[derive(Clone, Debug)]
+pub(super) struct Residuals {
+    pub values: Vec<f64>,
+    /// Derivatives by fractions of the bounds, one row for each residual.
+    pub d: Vec<Vec<f64>>,
 }
 
 /// A design with its functions.
@@ -47,10 +60,10 @@ pub(super) struct Function {
 pub(super) struct State {
     /// Searched variables as fractions of their bounds.
     pub x: Vec<f64>,
-    pub point: Point,
+    pub point: Rc<Point>,
     pub functions: Vec<Function>,
-    /// Second derivatives of the norm of linear residuals, for goals of several squares.
-    pub curvature: Vec<Option<Matrix>>,
+    /// Second derivatives of the functions of each block; empty where they are not known.
+    pub second: Vec<Matrix>,
     /// True for goals of squares, which are met where they vanish.
     pub squares: Vec<bool>,
     /// Goal and value of each group of peaks.
@@ -92,7 +105,7 @@ impl State {
         };
         let count = problem.settings.goals.len();
         let mut functions = Vec::new();
-        let (mut curvature, mut groups, mut goals) = (vec![None; count], Vec::new(), vec![0.0; count]);
+        let (mut groups, mut goals) = (Vec::new(), vec![0.0; count]);
         let mut squares = vec![false; count];
         for goal in 0..count {
             let per_unit = 1.0 / problem.settings.goals[goal].weight;
@@ -106,7 +119,7 @@ impl State {
             if let [(r, d)] = &rows[..] {
                 let group = groups.len();
                 let mut push = |value: f64, d: Vec<f64>| {
-                    functions.push(Function { role: Role::Peak(group), block: count + group, value, d });
+                    functions.push(Function::new(Role::Peak(group), count + group, value, d));
                 };
                 let mut of_goal = shares().flat_map(|(_, s)| s.misfits.clone());
                 let is_own = |k: usize| point.extrema.iter().find(|extremum| extremum.misfit == k);
@@ -127,9 +140,9 @@ impl State {
                 goals[goal] += greatest;
                 groups.push((goal, greatest));
             } else if !rows.is_empty() {
-                let (value, d, second) = norm_of(&rows, n);
-                functions.push(Function { role: Role::Goal(goal), block: goal, value, d });
-                curvature[goal] = Some(second);
+                let residuals = Residuals::folded(rows, n);
+                let value = residuals.norm();
+                functions.push(Function::of_norm(Role::Goal(goal), goal, value, residuals));
                 goals[goal] += value;
             } else if !plain.is_empty() {
                 let value = plain.iter().map(|k| per_unit * point.plain.values[*k]).sum();
@@ -137,7 +150,7 @@ impl State {
                 for k in plain {
                     d.iter_mut().zip(by_parts(&point.plain.d[k], per_unit)).for_each(|(a, b)| *a += b);
                 }
-                functions.push(Function { role: Role::Goal(goal), block: goal, value, d });
+                functions.push(Function::new(Role::Goal(goal), goal, value, d));
                 goals[goal] += value;
             }
             for k in shares().flat_map(|(_, s)| s.peaks.clone()) {
@@ -145,7 +158,7 @@ impl State {
                 let group = groups.len();
                 for (value, d) in peaks.values.iter().zip(&peaks.d) {
                     let (value, d) = (per_unit * value, by_parts(d, per_unit));
-                    functions.push(Function { role: Role::Peak(group), block: count + group, value, d });
+                    functions.push(Function::new(Role::Peak(group), count + group, value, d));
                 }
                 let greatest = per_unit * peaks.greatest();
                 goals[goal] += greatest;
@@ -155,11 +168,16 @@ impl State {
         let limits = count + groups.len();
         for row in point.limits.iter().filter(|row| !row.spread) {
             let per_scale = 1.0 / limit_scales[row.of];
-            functions.push(Function {
-                role: if row.equal { Role::Equal } else { Role::Limit },
-                block: limits + 2 * row.of + usize::from(row.upper),
-                value: per_scale * row.exceeds,
-                d: by_parts(&row.d, per_scale),
+            let role = if row.equal { Role::Equal } else { Role::Limit };
+            let block = limits + 2 * row.of + usize::from(row.upper);
+            let value = per_scale * row.exceeds;
+            let residuals = point.limit_residuals.iter().find(|(of, _)| row.upper && *of == row.of);
+            functions.push(match residuals {
+                Some((_, Rows { values, d })) => {
+                    let rows = values.iter().zip(d).map(|(r, d)| (per_scale * r, by_parts(d, per_scale)));
+                    Function::of_norm(role, block, value, Residuals::folded(rows.collect(), n))
+                }
+                None => Function::new(role, block, value, by_parts(&row.d, per_scale)),
             });
         }
         let ends = limits + 2 * problem.limits.len();
@@ -171,12 +189,22 @@ impl State {
                 let end = 2 * k + end;
                 for (value, d) in rows.values.iter().zip(&rows.d) {
                     let (value, d) = (per_scale * value, by_parts(d, per_scale));
-                    functions.push(Function { role: Role::End(end), block: ends + end, value, d });
+                    functions.push(Function::new(Role::End(end), ends + end, value, d));
                 }
             }
         }
         let blocks = ends + 2 * ranges.len();
-        Self { x, point, functions, curvature, squares, groups, ranges, blocks, goals }
+        Self {
+            x,
+            point: Rc::new(point),
+            functions,
+            second: vec![Vec::new(); blocks],
+            squares,
+            groups,
+            ranges,
+            blocks,
+            goals,
+        }
     }
 
     /// Values and gradients of the functions with a role.
@@ -311,31 +339,56 @@ impl State {
     }
 }
 
-/// Norm of residuals with its gradient, and its second derivatives for linear residuals.
-///
-/// ```text
-/// f = |r|,    grad f = J^T r / f,    (J^T J - grad f grad f^T) / f
-/// ```
-fn norm_of(rows: &[(f64, Vec<f64>)], n: usize) -> (f64, Vec<f64>, Matrix) {
-    let value = rows.iter().map(|(r, _)| r * r).sum::<f64>().sqrt();
-    let mut products = vec![vec![0.0; n]; n];
-    let mut d = vec![0.0; n];
-    for (r, row) in rows {
-        for i in 0..n {
-            d[i] += r * row[i];
-            (0..=i).for_each(|j| products[i][j] += row[i] * row[j]);
+impl Function {
+    fn new(role: Role, block: usize, value: f64, d: Vec<f64>) -> Self {
+        Self { role, block, value, d, residuals: None }
+    }
+
+    fn of_norm(role: Role, block: usize, value: f64, residuals: Residuals) -> Self {
+        let d = residuals.gradient();
+        Self { role, block, value, d, residuals: Some(residuals) }
+    }
+}
+
+impl Residuals {
+    /// Rows with the same squares and products as some residuals with their derivatives.
+    fn folded(rows: Vec<(f64, Vec<f64>)>, n: usize) -> Self {
+        let mut columns: Vec<Vec<f64>> = (0..n).map(|v| rows.iter().map(|(_, d)| d[v]).collect()).collect();
+        columns.push(rows.iter().map(|(r, _)| *r).collect());
+        let folded = folded_rows(columns);
+        Self {
+            values: folded.iter().map(|row| row[n]).collect(),
+            d: folded.into_iter().map(|row| row[..n].to_vec()).collect(),
         }
     }
-    let strongest = (0..n).map(|i| products[i][i]).fold(0.0, f64::max).sqrt();
-    // Below this the direction of the residuals is round-off.
-    let least = MET * strongest;
-    let size = value.max(least).max(f64::MIN_POSITIVE);
-    d.iter_mut().for_each(|d| *d = if value > least { *d / size } else { 0.0 });
-    for i in 0..n {
-        for j in 0..=i {
-            products[i][j] = (products[i][j] - d[i] * d[j]) / size;
-            products[j][i] = products[i][j];
-        }
+
+    pub fn norm(&self) -> f64 {
+        norm(&self.values)
     }
-    (value, d, products)
+
+    /// Norm below which the direction of the residuals is round-off.
+    pub fn least(&self) -> f64 {
+        let n = self.d.first().map_or(0, Vec::len);
+        let column = |v: usize| self.d.iter().map(|d| d[v] * d[v]).sum::<f64>();
+        (MET * (0..n).map(column).fold(0.0, f64::max).sqrt()).max(f64::MIN_POSITIVE)
+    }
+
+    /// `J^T r`
+    pub fn slope(&self) -> Vec<f64> {
+        let n = self.d.first().map_or(0, Vec::len);
+        (0..n).map(|v| self.values.iter().zip(&self.d).map(|(r, d)| r * d[v]).sum()).collect()
+    }
+
+    /// `J^T J`
+    pub fn products(&self) -> Matrix {
+        let n = self.d.first().map_or(0, Vec::len);
+        let entry = |i: usize, j: usize| self.d.iter().map(|d| d[i] * d[j]).sum();
+        (0..n).map(|i| (0..n).map(|j| entry(i, j)).collect()).collect()
+    }
+
+    /// Gradient of the norm.
+    fn gradient(&self) -> Vec<f64> {
+        let (value, least) = (self.norm(), self.least());
+        self.slope().into_iter().map(|d| if value > least { d / value } else { 0.0 }).collect()
+    }
 }

@@ -14,6 +14,7 @@
 
 mod front;
 mod functions;
+mod local_model;
 mod request;
 mod result;
 mod scalarization;

@@ -5,18 +5,22 @@
 //! min t    so that    f_i(x) <= a_i + d_i t,    c(x) <= 0,    0 <= x <= 1       f: goals as fractions of their ranges
 //! ```
 //!
-//! Sequential quadratic programming within a trust region, from the design between two neighbours on the front. The
-//! second derivatives of squares are those of linear residuals; the rest of each function is a symmetric rank-one
-//! secant, which neighbouring points of the front inherit.
+//! Each step leads to the minimum of a model of all functions within a trust region, from the design between two
+//! neighbours on the front. The model ([`LocalModel`]) costs no design: norms are those of linear residuals, and the rest
+//! of each function is a symmetric rank-one secant, which neighbouring points of the front inherit. Its minimum is found
+//! by sequential quadratic programming.
 
 use super::functions::{Criticality, Matrix, Role, Scale, State};
+use super::local_model::LocalModel;
 use crate::optimize::{BINDS, LIMIT_KEPT, Memory, Point};
 use hardpoint::linalg::semidefinite;
 use hardpoint_search::quadratic::{Linear, Minimum, minimize};
 use hardpoint_search::{Singular, dot, norm, singular};
 
-/// Residual at which a point of a front is found: a tenth of what is promised for each.
-const SHARP: f64 = 1e-7;
+/// Residual at which an end of a front is found: a tenth of what is promised, since the ranges of the goals change ...
+pub(super) const SHARP: f64 = 1e-7;
+/// ... and that of the points between them.
+pub(super) const SHARP_BETWEEN: f64 = 5e-7;
 /// Maximum number of steps to a point.
 const STEPS: usize = 40;
 /// Radius of the first trust region, as a fraction of the bounds.
@@ -43,6 +47,15 @@ const AUGMENTATIONS: [f64; 5] = [0.0, 0.1, 1.0, 10.0, 100.0];
 const PENALTY: f64 = 10.0;
 /// Largest such weight: limits that still are exceeded cannot be kept.
 const MOST_PENALTY: f64 = 1e8;
+/// Maximum number of steps to the minimum of the model of all functions, which cost no design ...
+const MODEL_STEPS: usize = 100;
+/// ... and the step at which it is found, as a fraction of the trust region.
+const MODEL_SHARP: f64 = 1e-9;
+/// Part of its prediction with which a step to the minimum of the model widens the region of the next.
+const FAIR: f64 = 0.2;
+/// Largest factor of the weight of the violation in one step to a point: a limit that is out of reach of the trust
+/// region is not a reason for more.
+const MORE_PENALTY: f64 = 10.0;
 /// Secants whose denominator is below this fraction of its factors are not used.
 const SECANT: f64 = 1e-6;
 
@@ -75,6 +88,16 @@ pub(super) struct Scalarization<'p> {
     pub reference: Reference,
     /// Distance between the goals and the line of the reference that is near enough.
     pub near: f64,
+    /// Residual that is small enough.
+    pub sharp: f64,
+}
+
+/// Minimum of the model of all functions.
+struct ModelMinimum {
+    x: Vec<f64>,
+    /// Objective with the penalty.
+    value: f64,
+    penalty: f64,
 }
 
 /// Step of the quadratic program.
@@ -141,39 +164,46 @@ impl Scalarization<'_> {
             if is_kept && best.as_ref().is_none_or(|(_, c)| critical.residual < c.residual) {
                 best = Some((here.clone(), critical.clone()));
             }
+            let is_sharp = is_kept && critical.residual <= self.sharp;
+            if is_sharp && apart <= self.near {
+                break;
+            }
             if self.memory.interrupted() {
                 return None;
             }
-            let Some(mut step) = self.step(&here, &mut curvatures, radius, penalty) else { break };
-            while step.forces > 0.5 * penalty && penalty < MOST_PENALTY {
-                penalty *= 10.0;
-                recent.clear();
-                match self.step(&here, &mut curvatures, radius, penalty) {
-                    Some(next) => step = next,
-                    None => break,
+            let Some(minimum) = self.minimize_model(&here, &mut curvatures, radius, penalty) else {
+                radius *= SHRINK;
+                if radius < LEAST_RADIUS {
+                    break;
                 }
+                continue;
+            };
+            if minimum.penalty > penalty {
+                penalty = minimum.penalty;
+                recent.clear();
             }
-            let length = step.p.iter().fold(0.0, |most: f64, p| most.max(p.abs()));
-            let is_near = apart <= self.near || length <= self.near.min(RADIUS) * SHARP.sqrt();
-            if is_kept && critical.residual <= SHARP && is_near || length < LEAST_RADIUS {
+            let x = minimum.x;
+            let length = here.x.iter().zip(&x).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+            let is_near = length <= self.near.min(RADIUS) * SHARP.sqrt();
+            if is_sharp && is_near || length < LEAST_RADIUS {
                 break;
             }
-            let x: Vec<f64> = here.x.iter().zip(&step.p).map(|(x, p)| (x + p).clamp(0.0, 1.0)).collect();
             let Some(next) = self.evaluate(&x) else {
                 radius = SHRINK * length;
                 continue;
             };
             curvatures.learn(&here, &next);
             let critical_next = self.criticality(&next);
-            let value = |(t, v): (f64, f64)| t + penalty * v.max(0.0);
-            let (now, then) = (value((t, violation)), value(self.merit(&next)));
+            let value = |state: &State| self.value(state, penalty);
+            let (now, then) = (value(&here), value(&next));
+            let gain = now - minimum.value;
             recent.push(now);
             let from = recent.iter().rev().take(MEMORY).fold(f64::NEG_INFINITY, |a, b| a.max(*b));
             let is_nearer = critical_next.residual <= NEARER * critical.residual
                 && self.merit(&next).1 <= violation.max(LIMIT_KEPT);
-            let is_down = then <= from - GAIN * step.gain;
+            let is_down = then <= from - GAIN * gain;
             if is_down || is_nearer {
-                if then <= now - 0.5 * step.gain && length >= 0.9 * radius {
+                if then <= now - 0.5 * gain && length >= 0.9 * radius {
                     radius = (2.0 * radius).min(1.0);
                 }
                 (here, critical) = (next, critical_next);
@@ -187,14 +217,86 @@ impl Scalarization<'_> {
         best.map(|(state, criticality)| Solved { state, criticality, curvatures })
     }
 
-    /// Step of the quadratic model; its multipliers enter the second derivatives.
-    fn step(&self, state: &State, curvatures: &mut Curvatures, radius: f64, penalty: f64) -> Option<Step> {
+    /// Objective t with the penalty on the violation of limits.
+    fn value(&self, state: &State, penalty: f64) -> f64 {
+        let (t, violation) = self.merit(state);
+        t + penalty * violation.max(0.0)
+    }
+
+    /// Minimises the model of all functions near a design, within a radius. Its multipliers enter the curvatures.
+    fn minimize_model(
+        &self,
+        base: &State,
+        curvatures: &mut Curvatures,
+        radius: f64,
+        mut penalty: f64,
+    ) -> Option<ModelMinimum> {
+        let Curvatures { secants, multipliers } = curvatures;
+        let model = LocalModel { base, secants };
+        let region: Vec<[f64; 2]> =
+            base.x.iter().map(|x| [(x - radius).max(0.0), (x + radius).min(1.0)]).collect();
+        let mut here = model.at(&base.x);
+        let most_penalty = (MORE_PENALTY * penalty).min(MOST_PENALTY);
+        let mut best: Option<(Vec<f64>, f64)> = None;
+        let (mut within, mut recent) = (radius, Vec::<f64>::new());
+        for k in 0..MODEL_STEPS {
+            // The first multipliers are those of another design.
+            let passes = if k == 0 { 2 } else { 1 };
+            let Some(mut step) = self.step(&here, multipliers, (&region, within), penalty, passes) else {
+                break;
+            };
+            if step.forces > 0.5 * penalty && penalty < most_penalty {
+                penalty *= MORE_PENALTY;
+                recent.clear();
+                best = None;
+                match self.step(&here, multipliers, (&region, within), penalty, 1) {
+                    Some(next) => step = next,
+                    None => break,
+                }
+            }
+            let now = self.value(&here, penalty);
+            if best.as_ref().is_none_or(|(_, value)| now < *value) {
+                best = Some((here.x.clone(), now));
+            }
+            let length = step.p.iter().fold(0.0, |most: f64, p| most.max(p.abs()));
+            if length <= MODEL_SHARP * radius {
+                break;
+            }
+            let x = here.x.iter().zip(&step.p).zip(&region);
+            let x: Vec<f64> = x.map(|((x, p), [low, high])| (x + p).clamp(*low, *high)).collect();
+            let next = model.at(&x);
+            let then = self.value(&next, penalty);
+            recent.push(now);
+            let from = recent.iter().rev().take(MEMORY).fold(f64::NEG_INFINITY, |a, b| a.max(*b));
+            if then <= from - GAIN * step.gain {
+                if then <= now - FAIR * step.gain && length >= 0.9 * within {
+                    within = (2.0 * within).min(radius);
+                }
+                here = next;
+            } else {
+                within = SHRINK * length;
+            }
+        }
+        let now = self.value(&here, penalty);
+        let (x, value) = best.filter(|(_, value)| *value < now).unwrap_or((here.x, now));
+        (x != base.x).then_some(ModelMinimum { x, value, penalty })
+    }
+
+    /// Step of a quadratic program at a design of the model, within a region and a radius. Its multipliers replace the given ones.
+    fn step(
+        &self,
+        state: &State,
+        by_function: &mut Vec<f64>,
+        region: (&[[f64; 2]], f64),
+        penalty: f64,
+        passes: usize,
+    ) -> Option<Step> {
         let mut found = None;
         // The multipliers of the first solution correct the second derivatives of the second.
-        for _ in 0..2 {
-            let (constraints, owners, aux) = self.constraints(state, radius);
+        for _ in 0..passes {
+            let (constraints, owners, aux) = self.constraints(state, region);
             let n = state.x.len();
-            let matrix = self.hessian(state, curvatures);
+            let matrix = hessian(state, by_function);
             let mut h = vec![vec![0.0; n + aux]; n + aux];
             (0..n).for_each(|i| h[i][..n].copy_from_slice(&matrix[i]));
             (n..n + aux).for_each(|k| h[k][k] = SLIGHT);
@@ -202,11 +304,11 @@ impl Scalarization<'_> {
             let mut g = vec![0.0; n + aux];
             (g[n], g[n + 1]) = (1.0, penalty);
             let Minimum { p, multipliers } = minimize(&h, &g, &constraints)?;
-            let mut by_function = vec![0.0; state.functions.len()];
+            let mut new = vec![0.0; state.functions.len()];
             let mut forces = 0.0;
             for (owner, m) in owners.iter().zip(&multipliers) {
                 let Owner::Function { of, sign, factor } = *owner else { continue };
-                by_function[of] += sign * factor * m;
+                new[of] += sign * factor * m;
                 if matches!(state.functions[of].role, Role::Limit | Role::Equal | Role::End(_)) {
                     forces += m;
                 }
@@ -218,10 +320,10 @@ impl Scalarization<'_> {
                     forces += m;
                 }
                 if let Some(k) = state.functions.iter().position(|f| f.role == Role::Goal(goal)) {
-                    by_function[k] += m / self.scale.range[goal];
+                    new[k] += m / self.scale.range[goal];
                 }
             }
-            curvatures.multipliers = by_function;
+            *by_function = new;
             let gain = -(p[n] + penalty * p[n + 1]);
             found = Some(Step { p: p[..n].to_vec(), gain, multipliers, forces });
         }
@@ -231,7 +333,11 @@ impl Scalarization<'_> {
 
     /// Linear constraints of a step, with the owner of each, and the number of auxiliary unknowns: t, the violation of
     /// limits, the maximum of each group of peaks, and both ends of each limited range.
-    fn constraints(&self, state: &State, radius: f64) -> (Vec<Linear>, Vec<Owner>, usize) {
+    fn constraints(
+        &self,
+        state: &State,
+        (region, radius): (&[[f64; 2]], f64),
+    ) -> (Vec<Linear>, Vec<Owner>, usize) {
         let n = state.x.len();
         let (groups, ends) = (state.groups.len(), 2 * state.ranges.len());
         let aux = 2 + groups + ends;
@@ -293,58 +399,50 @@ impl Scalarization<'_> {
             push(&[], 1.0, &with, most + e0 - now, Owner::Other);
         }
         push(&[], 1.0, &[(e, -1.0)], e0, Owner::Other);
-        for (v, x) in state.x.iter().enumerate() {
-            push(&[], 1.0, &[(v, 1.0)], radius.min(1.0 - x), Owner::Other);
-            push(&[], 1.0, &[(v, -1.0)], radius.min(*x), Owner::Other);
+        for (v, (x, [low, high])) in state.x.iter().zip(region).enumerate() {
+            push(&[], 1.0, &[(v, 1.0)], radius.min(high - x), Owner::Other);
+            push(&[], 1.0, &[(v, -1.0)], radius.min(x - low), Owner::Other);
         }
         (rows, owners, aux)
     }
+}
 
-    /// Second derivatives of the Lagrangian, made positive definite.
-    ///
-    /// ```text
-    /// H = sum m_k (linear residuals + secant) + s sum of c c^T        c: unit gradients of the active functions
-    /// ```
-    ///
-    /// The last sum does not act on the directions in which the active functions stay the same. It has the smallest
-    /// factor s that makes H positive definite; where none does, curvatures are replaced by their sizes, (H^2)^1/2.
-    fn hessian(&self, state: &State, curvatures: &Curvatures) -> Matrix {
-        let n = state.x.len();
-        let mut h = vec![vec![0.0; n]; n];
-        let mut add = |m: f64, a: &Matrix| {
-            for (row, other) in h.iter_mut().zip(a) {
-                row.iter_mut().zip(other).for_each(|(x, y)| *x += m * y);
-            }
-        };
-        for (f, m) in state.functions.iter().zip(&curvatures.multipliers).filter(|(_, m)| **m != 0.0) {
-            add(*m, &curvatures.secants[f.block]);
-            if let Role::Goal(goal) = f.role
-                && let Some(second) = &state.curvature[goal]
-            {
-                add(*m, second);
-            }
+/// Second derivatives of the Lagrangian, made positive definite.
+///
+/// ```text
+/// H = sum m_k (second derivatives)_k + s sum of c c^T        c: unit gradients of the active functions
+/// ```
+///
+/// The last sum does not act on the directions in which the active functions stay the same. It has the smallest
+/// factor s that makes H positive definite; where none does, curvatures are replaced by their sizes, (H^2)^1/2.
+fn hessian(state: &State, multipliers: &[f64]) -> Matrix {
+    let n = state.x.len();
+    let mut h = vec![vec![0.0; n]; n];
+    let weighted = || state.functions.iter().zip(multipliers).filter(|(_, m)| **m != 0.0);
+    for (f, m) in weighted() {
+        for (row, other) in h.iter_mut().zip(&state.second[f.block]) {
+            row.iter_mut().zip(other).for_each(|(x, y)| *x += m * y);
         }
-        let largest = (0..n).map(|k| h[k][k].abs()).fold(LEAST_CURVATURE, f64::max);
-        let active: Vec<Vec<f64>> = state
-            .functions
-            .iter()
-            .zip(&curvatures.multipliers)
-            .filter(|(f, m)| **m != 0.0 && norm(&f.d) > 0.0)
-            .map(|(f, _)| f.d.iter().map(|d| d / norm(&f.d)).collect())
-            .collect();
-        let with = |by: f64, shift: f64| -> Matrix {
-            let mut h = h.clone();
-            for i in 0..n {
-                for j in 0..n {
-                    h[i][j] += by * active.iter().map(|c| c[i] * c[j]).sum::<f64>();
-                }
-                h[i][i] += shift;
-            }
-            h
-        };
-        let mut augmented = AUGMENTATIONS.into_iter().map(|s| with(s * largest, FLAT * largest));
-        augmented.find(|h| semidefinite::is_definite(h)).unwrap_or_else(|| sizes_of(&h, FLAT * largest))
     }
+    let largest = (0..n).map(|k| h[k][k].abs()).fold(LEAST_CURVATURE, f64::max);
+    let active = weighted().filter(|(f, _)| norm(&f.d) > 0.0);
+    let mut active: Vec<Vec<f64>> =
+        active.map(|(f, _)| f.d.iter().map(|d| d / norm(&f.d)).collect()).collect();
+    for v in (0..n).filter(|v| state.x[*v] <= 0.0 || state.x[*v] >= 1.0) {
+        active.push((0..n).map(|i| f64::from(u8::from(i == v))).collect());
+    }
+    let with = |by: f64, shift: f64| -> Matrix {
+        let mut h = h.clone();
+        for i in 0..n {
+            for j in 0..n {
+                h[i][j] += by * active.iter().map(|c| c[i] * c[j]).sum::<f64>();
+            }
+            h[i][i] += shift;
+        }
+        h
+    };
+    let mut augmented = AUGMENTATIONS.into_iter().map(|s| with(s * largest, FLAT * largest));
+    augmented.find(|h| semidefinite::is_definite(h)).unwrap_or_else(|| sizes_of(&h, FLAT * largest))
 }
 
 /// The matrix `V |L| V^T` of a symmetric matrix `V L V^T`, with sizes of at least `least`.
@@ -384,9 +482,9 @@ impl Curvatures {
         mean
     }
 
-    /// Multipliers of the goals alone.
-    pub fn of_weights(state: &State, scale: &Scale, weights: &[f64]) -> Self {
-        let mut new = Self::default();
+    /// Multipliers of the goals alone, with known secants.
+    pub fn of_weights(state: &State, scale: &Scale, weights: &[f64], known: Self) -> Self {
+        let mut new = Self { multipliers: Vec::new(), ..known };
         new.fit(state);
         for (f, m) in state.functions.iter().zip(&mut new.multipliers) {
             if let Role::Goal(goal) = f.role {
@@ -416,20 +514,33 @@ impl Curvatures {
                 _ if sum != 0.0 => self.multipliers[k] / sum,
                 _ => 0.0,
             };
-            let mut y = vec![0.0; s.len()];
-            for k in &members {
-                let (a, b) = (&from.functions[*k], &to.functions[*k]);
-                y.iter_mut().zip(a.d.iter().zip(&b.d)).for_each(|(y, (a, b))| *y += weight(*k) * (b - a));
-            }
             if members.iter().all(|k| weight(*k) == 0.0) {
                 continue;
             }
-            if let Some(Role::Goal(goal)) = members.first().map(|k| from.functions[*k].role) {
-                for second in [&from.curvature[goal], &to.curvature[goal]].into_iter().flatten() {
-                    y.iter_mut().zip(second).for_each(|(y, row)| *y -= 0.5 * dot(row, &s));
+            let mut y = vec![0.0; s.len()];
+            for k in &members {
+                for (state, sign) in [(from, -1.0), (to, 1.0)] {
+                    let f = &state.functions[*k];
+                    match &f.residuals {
+                        Some(residuals) => {
+                            let linear = residuals.products();
+                            for ((y, d), row) in y.iter_mut().zip(residuals.slope()).zip(&linear) {
+                                *y += sign * d - 0.5 * dot(row, &s);
+                            }
+                        }
+                        None => y.iter_mut().zip(&f.d).for_each(|(y, d)| *y += sign * weight(*k) * d),
+                    }
                 }
             }
             let secant = &mut self.secants[block];
+            // What is left of residuals is proportional to them, and falls with them.
+            if members.iter().any(|k| from.functions[*k].residuals.is_some()) {
+                let bent: f64 = secant.iter().zip(&s).map(|(row, x)| dot(row, &s) * x).sum();
+                let size = (dot(&y, &s) / bent).abs();
+                if size < 1.0 {
+                    secant.iter_mut().flatten().for_each(|x| *x *= size);
+                }
+            }
             let r: Vec<f64> = y.iter().zip(secant.iter()).map(|(y, row)| y - dot(row, &s)).collect();
             let along = dot(&r, &s);
             if along.abs() > SECANT * norm(&r) * norm(&s) {

@@ -4,13 +4,17 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use hardpoint::model::{Model, OptimizationSettings};
 
-use super::front::{End, Front};
-use super::functions::State;
+use super::front::{Anchor, End, Front};
+use super::functions::{Scale, State};
 use super::request::Request;
 use super::result::{Outcome, TradeOff};
+use super::scalarization::{Curvatures, Reference, SHARP, Scalarization, Solved};
 use crate::evaluation::{Motions, StudyCost};
-use crate::optimize::{self, Memory, Problem, Status, assess, failed_design, limit_scales};
+use crate::optimize::{self, BINDS, MET, Memory, Problem, Status, assess, failed_design, limit_scales};
 use crate::progress::{Control, Progress, Step};
+
+/// Change, as a fraction of the bounds, below which a search has not moved a variable.
+const UNMOVED: f64 = 1e-9;
 
 /// Computes the front of the goals of a request. Reports every point.
 ///
@@ -18,7 +22,8 @@ use crate::progress::{Control, Progress, Step};
 pub fn trade_off(model: &Model, motions: &Motions<'_>, request: &Request, control: Control<'_>) -> TradeOff {
     let Request { settings, points } = request;
     let Control { progress, more, threads } = control;
-    let problem = Problem::new(model, motions, settings);
+    let mut problem = Problem::new(model, motions, settings);
+    problem.has_limit_residuals = true;
     let ended = AtomicBool::new(false);
     let go_on = || !ended.load(Ordering::Relaxed) && more();
     let memory = Memory::new(&problem, &go_on);
@@ -49,7 +54,8 @@ pub fn trade_off(model: &Model, motions: &Motions<'_>, request: &Request, contro
     let mut report = |step: Progress<'_>| {
         progress(Progress { step: step.step, done: 0, total: *points, is_counted: false })
     };
-    let anchors = match anchors(&problem, Control { threads, progress: &mut report, more }, &mut result) {
+    let control = Control { threads, progress: &mut report, more };
+    let anchors = match anchors(&memory, nominal.as_ref(), control, &mut result) {
         Ok(anchors) => anchors,
         Err(outcome) => {
             result.cost += memory.cost.take();
@@ -84,13 +90,23 @@ pub fn trade_off(model: &Model, motions: &Motions<'_>, request: &Request, contro
 /// Optimum of each goal alone, as fractions of the bounds, with the cost added to the result; the outcome of the
 /// trade-off if one is not found.
 fn anchors(
-    problem: &Problem<'_>,
+    memory: &Memory<'_>,
+    nominal: Option<&State>,
     control: Control<'_>,
     result: &mut TradeOff,
-) -> Result<Vec<Vec<f64>>, Outcome> {
+) -> Result<Vec<Anchor>, Outcome> {
     let Control { threads, progress, more } = control;
-    let mut anchors = Vec::new();
+    let problem = memory.problem;
+    let (mut anchors, mut curvatures) = (Vec::new(), Curvatures::default());
     for (goal, alone) in problem.settings.goals.iter().enumerate() {
+        let before = memory.cost.borrow().designs;
+        let near = nominal.filter(|_| problem.settings.starts == 1);
+        let near = near.and_then(|nominal| nearest_optimum(memory, nominal, goal, &mut curvatures));
+        result.anchor_designs += memory.cost.borrow().designs - before;
+        if let Some(x) = near {
+            anchors.push(Anchor { x, curvatures: curvatures.clone() });
+            continue;
+        }
         let settings = OptimizationSettings { goals: vec![alone.clone()], ..problem.settings.clone() };
         let request = optimize::Request { settings, first: 0 };
         let control = Control { threads, progress: &mut *progress, more };
@@ -101,11 +117,43 @@ fn anchors(
         let status = search.or(found.searches.first()).map_or(Status::NoStart, |s| s.status);
         match search.and_then(|s| s.found.as_ref()).filter(|f| f.violation <= optimize::LIMIT_KEPT) {
             Some(found) if !matches!(status, Status::Interrupted | Status::NoEffect) => {
-                anchors.push(problem.parts(&found.design));
+                let curvatures = Curvatures::default();
+                anchors.push(Anchor { x: problem.parts(&found.design), curvatures });
             }
             _ if status == Status::Interrupted => return Err(Outcome::Interrupted),
             _ => return Err(Outcome::NoAnchor(goal, status)),
         }
     }
     Ok(anchors)
+}
+
+/// Optimum of a goal alone that the steps of a front lead to from the nominal design, as fractions of the bounds; `None`
+/// if they do not, if the goal vanishes there, or if a variable within its bounds has not moved: the nominal design may
+/// be symmetric in it, and a saddle.
+fn nearest_optimum(
+    memory: &Memory<'_>,
+    nominal: &State,
+    goal: usize,
+    known: &mut Curvatures,
+) -> Option<Vec<f64>> {
+    let limit_scales = limit_scales(memory.problem, &nominal.point);
+    let count = nominal.goals.len();
+    let steepest = nominal.steepest();
+    if steepest.iter().any(|s| *s == 0.0) {
+        return None;
+    }
+    let scale = Scale { zero: nominal.goals.clone(), range: steepest, steepest: vec![1.0; count] };
+    let mut reference: Reference = vec![None; count];
+    reference[goal] = Some([0.0, 1.0]);
+    let (limit_scales, scale) = (&limit_scales[..], &scale);
+    let scalarization = Scalarization { memory, limit_scales, scale, reference, near: 1.0, sharp: SHARP };
+    let mut weights = vec![0.0; count];
+    weights[goal] = 1.0;
+    let curvatures = Curvatures::of_weights(nominal, scale, &weights, known.clone());
+    let Solved { state, criticality, curvatures } = scalarization.solve(nominal.clone(), curvatures)?;
+    *known = curvatures;
+    let has_moved = |(x, from): (&f64, &f64)| (x - from).abs() > UNMOVED || *x < BINDS || *x > 1.0 - BINDS;
+    let is_met = state.squares[goal] && state.goals[goal] <= MET * scale.range[goal];
+    let is_found = criticality.residual <= SHARP && !is_met && state.x.iter().zip(&nominal.x).all(has_moved);
+    is_found.then_some(state.x)
 }
