@@ -381,6 +381,16 @@ impl<T: Real> SampledCurve<'_, T> {
         }
     }
 
+    /// Largest distance of its values from `at`.
+    pub(super) fn farthest(&self, at: f64) -> f64 {
+        self.values.iter().map(|x| (x[0].value() - at).abs()).fold(0.0, f64::max)
+    }
+
+    /// True if its value at time k is `at`, within a part of the largest distance from it.
+    pub(super) fn is_at(&self, k: usize, at: f64, farthest: f64) -> bool {
+        (self.values[k][0].value() - at).abs() <= THERE * farthest
+    }
+
     /// True if all values in interval k are farther than this from `at`.
     fn is_apart(&self, k: usize, at: f64, far: f64) -> bool {
         self.bound(k, 1.0) < at - far || self.bound(k, -1.0) < -at - far
@@ -785,8 +795,7 @@ pub(super) fn crossings<'c, T: Real>(
     at: f64,
 ) -> impl Iterator<Item = (usize, f64)> + 'c {
     let x = x.as_ref();
-    let distances = x.into_iter().flat_map(|x| &x.values).map(move |x| (x[0].value() - at).abs());
-    let farthest = distances.fold(0.0, f64::max);
+    let farthest = x.map_or(0.0, |x| x.farthest(at));
     let intervals = 0..y.values.len().saturating_sub(1);
     intervals.flat_map(move |k| {
         let Some(x) = x else {
@@ -798,7 +807,7 @@ pub(super) fn crossings<'c, T: Real>(
         if x.is_apart(k, at, NEAR_A_TURN * farthest) {
             return Vec::new();
         }
-        let is_at = |end: usize| (x.values[end][0].value() - at).abs() <= THERE * farthest;
+        let is_at = |end: usize| x.is_at(end, at, farthest);
         let turns_at = |t: f64| {
             let miss = (x.number(k, t) - at).abs();
             let is_near = miss <= NEAR_A_TURN * farthest;

@@ -815,7 +815,13 @@ fn extreme<T: Real>(
             offer(value, t);
         }
     }
-    let counts = |k: usize| inside(x.as_ref().map_or(y.times[k], |x| x.values[k][0].value()));
+    // Times at an end of the window are among the crossings: round-off does not decide between their derivatives.
+    let abscissa = x.as_ref().filter(|_| last > 0);
+    let ends =
+        abscissa.into_iter().flat_map(|x| metric.window.into_iter().flatten().map(move |end| (x, end)));
+    let ends: Vec<_> = ends.map(|(x, end)| (x, end, x.farthest(end))).collect();
+    let is_at_end = |k: usize| ends.iter().any(|(x, end, farthest)| x.is_at(k, *end, *farthest));
+    let counts = |k: usize| inside(abscissa_at(y, x, k).value()) && !is_at_end(k);
     let at_times = (0..=last).filter(|k| counts(*k)).map(|k| sign * y.values[k][0].value());
     let most = at_times.fold(f64::NEG_INFINITY, f64::max);
     for k in 0..=last {
