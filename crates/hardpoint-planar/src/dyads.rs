@@ -75,6 +75,8 @@ const SAME: f64 = 1e-7;
 const STEPS: usize = 30;
 /// A singular value below this fraction of the largest is zero: poses are given with digits far beyond.
 const RANK: f64 = 1e-9;
+/// Part of the mean squared length of the projected axes of a space, above which an axis is taken for its basis.
+const NEARLY: f64 = 0.7;
 
 /// Cranks through the displacements, which are those of a task of size 1, whose pivots lie on the given lines
 /// `normal . g = distance`: four with five poses and no line, or four poses and one line, those that are real.
@@ -162,14 +164,34 @@ pub fn sliders(moves: &[Displacement], samples: usize) -> Vec<Dyad> {
 /// The `n` directions of `width` unknowns that the rows change least.
 fn kernel(rows: &[Vec<f64>], width: usize, n: usize) -> Vec<Vec<f64>> {
     let found = singular(rows, width);
-    found.directions[width - n..].to_vec()
+    canonical(&found.directions[width - n..], width)
 }
 
 /// Directions that the rows do not change.
 fn exact_kernel(rows: &[Vec<f64>], width: usize) -> Vec<Vec<f64>> {
     let found = singular(rows, width);
     let zero = found.values.iter().position(|v| *v <= RANK * found.values[0]).unwrap_or(width);
-    found.directions[zero..].to_vec()
+    canonical(&found.directions[zero..], width)
+}
+
+/// Orthonormal basis of the space of another one, which depends on the space alone: round-off chooses among the
+/// singular vectors of equal singular values. Each vector is the projection of an axis on what is left of the space.
+fn canonical(basis: &[Vec<f64>], width: usize) -> Vec<Vec<f64>> {
+    let mut projection: Vec<Vec<f64>> =
+        (0..width).map(|i| (0..width).map(|j| basis.iter().map(|v| v[i] * v[j]).sum()).collect()).collect();
+    let of = |left: usize| {
+        // The squared lengths of the projected axes have the sum `left`. The first axis that is nearly as long as their
+        // mean does not depend on round-off.
+        let long = NEARLY * left as f64 / width as f64;
+        let axis = (0..width).find(|k| projection[*k][*k] >= long).unwrap_or_default();
+        let length = projection[axis][axis].sqrt();
+        let vector: Vec<f64> = projection[axis].iter().map(|x| x / length).collect();
+        for (row, x) in projection.iter_mut().zip(&vector) {
+            row.iter_mut().zip(&vector).for_each(|(p, y)| *p -= x * y);
+        }
+        vector
+    };
+    (1..=basis.len()).rev().map(of).collect()
 }
 
 /// A conic of three homogeneous unknowns: coefficients of xx, yy, zz, yz, zx, xy.

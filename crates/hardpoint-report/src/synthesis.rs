@@ -118,6 +118,11 @@ pub fn refusal(file: &TaskFile, error: &TaskError) -> Diagnostics {
             .error(NOTHING, "given fixed pivots fit three poses only", None, Some("fixed_pivots"))
             .note("four poses leave a curve of fixed pivots, and five leave at most four points")
             .help("use `fixed_region`, or give three poses"),
+        TaskError::SamePivots([a, b]) => {
+            let message = format!("fixed pivots {} and {} are the same", a + 1, b + 1);
+            file.error(NOTHING, &message, None, Some("fixed_pivots"))
+                .help("remove one of the two: each has one crank")
+        }
         TaskError::NoType => file.error(COUNT, "no type of linkage is selected", None, Some("linkages")),
     };
     file.diagnostics(vec![diagnostic])

@@ -117,6 +117,11 @@ fn tasks_without_a_synthesis_are_explained() {
             "HP0902",
             "three poses only",
         ),
+        (
+            "poses = [[0, 0, 0], [2, 1, 30], [3, 2, 70]]\nfixed_pivots = [[1, -1], [2, 0], [1, -1]]",
+            "HP0902",
+            "fixed pivots 1 and 3",
+        ),
     ] {
         let file = parsed(body);
         let error = synthesize(&task_of(&file), &|| true).expect_err(body);

@@ -87,6 +87,12 @@ fn check_poses(task: &Task, poses: &[Pose], size: f64) -> Result<(), TaskError> 
     if !task.fixed_pivots.is_empty() && poses.len() != 3 {
         return Err(TaskError::FixedPivots);
     }
+    for (j, pivot) in task.fixed_pivots.iter().enumerate() {
+        let is_same = |other: &Complex| (*other - *pivot).norm() <= COINCIDE * size;
+        if let Some(i) = task.fixed_pivots[..j].iter().position(is_same) {
+            return Err(TaskError::SamePivots([i, j]));
+        }
+    }
     let turned = |a: &Pose, b: &Pose| (0.5 * (a.angle - b.angle)).sin().abs();
     for j in 0..poses.len() {
         for i in 0..j {
@@ -191,7 +197,8 @@ fn dyads_of(task: &Task, moves: &[Displacement], frame: &Frame) -> (Vec<Dyad>, V
         }
         _ if !task.fixed_pivots.is_empty() => {
             let given = task.fixed_pivots.iter().map(|p| frame.inward(*p));
-            return (given.filter_map(|p| dyads::crank_about(moves, p)).collect(), sliders);
+            let cranks = given.filter_map(|p| dyads::crank_about(moves, p)).collect();
+            return (cranks, sliders.into_iter().filter(near).collect());
         }
         _ => {
             let field = |k: u32| match task.fixed_region {

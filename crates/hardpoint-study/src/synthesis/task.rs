@@ -118,6 +118,8 @@ pub enum TaskError {
     TurnOrder(usize),
     /// Fixed pivots for a number of poses other than three.
     FixedPivots,
+    /// Two given fixed pivots coincide, by their numbers from 0.
+    SamePivots([usize; 2]),
     /// No type of linkage is selected.
     NoType,
 }

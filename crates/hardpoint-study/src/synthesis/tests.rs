@@ -236,6 +236,39 @@ fn pivots_of_three_poses_may_be_given() {
 }
 
 #[test]
+fn three_poses_have_the_same_answers_in_every_unit_and_place() {
+    let given = [(0.0, 0.0, 0.0), (60.0, 90.0, 25.0), (70.0, 190.0, 60.0)];
+    let found = |by: f64, shift: Complex, turns: [f64; 3]| {
+        let poses = given.iter().zip(turns);
+        let poses = poses.map(|((x, y, a), t)| pose(by * x + shift.x, by * y + shift.y, a + 360.0 * t));
+        of(&poses_of(poses.collect()))
+    };
+    let base = found(1e-3, Complex::ZERO, [0.0; 3]);
+    assert!(base.sliders.len() > 10 && base.slider_cranks.good > 100, "{:?}", base.slider_cranks);
+    let (none, moved) = (Complex::ZERO, at(0.31, -0.17));
+    for (by, shift, turns) in [
+        // Inches
+        (1e-3 / 25.4, none, [0.0; 3]),
+        (2e-3, none, [0.0; 3]),
+        (1.0 / 3.0, none, [0.0; 3]),
+        (1e-3, moved, [0.0; 3]),
+        (1e-3, none, [0.0, 1.0, -2.0]),
+    ] {
+        let other = found(by, shift, turns);
+        let counted = |of: &Synthesis| (of.four_bars, of.slider_cranks, of.sliders.len());
+        assert_eq!(counted(&base), counted(&other), "{by} {shift:?} {turns:?}");
+        let back = |p: Complex| (p - shift).times(1e-3 / by);
+        for (a, b) in base.sliders.iter().zip(&other.sliders) {
+            let apart = (a.pin() - back(b.pin())).norm();
+            assert!(apart < FOUND * base.size, "{by} {shift:?} {turns:?}: {a:?} {b:?}");
+        }
+        for (a, b) in base.answers.iter().zip(&other.answers) {
+            assert!((a.score - b.score).abs() < FOUND, "{by} {shift:?} {turns:?}: {} {}", a.score, b.score);
+        }
+    }
+}
+
+#[test]
 fn dyads_move_with_their_poses() {
     let poses = scattered(4);
     let sorted = |poses: Vec<Pose>, back: &dyn Fn(Complex) -> Complex| {
@@ -507,6 +540,8 @@ fn tasks_without_a_synthesis_are_refused() {
     assert_eq!(refused(&none), TaskError::NoType);
     let given = Task { fixed_pivots: vec![at(0.0, 0.0)], ..poses_of(scattered(1)) };
     assert_eq!(refused(&given), TaskError::FixedPivots);
+    let twice = Task { fixed_pivots: vec![at(1.0, -1.0), at(1.0, -1.0)], ..poses_of(three) };
+    assert_eq!(refused(&twice), TaskError::SamePivots([0, 1]));
 }
 
 #[test]
