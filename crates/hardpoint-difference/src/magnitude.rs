@@ -6,7 +6,7 @@ use hardpoint::motion::Motion;
 /// Threshold of a zero change: a natural step of the design ([`natural_step`](hardpoint::model::Model::natural_step))
 /// changes the quantity by less than this fraction of the whole motion.
 const NOTHING: f64 = 1e-10;
-/// Round-off of a metric as a fraction of its value, which may be much greater than the motion suggests.
+/// Round-off of a value as a fraction of it, which may be much greater than the motion suggests.
 const VALUE: f64 = 1e-12;
 
 /// Magnitude of a motion at orders 0, 1 and 2. A mechanism at rest has the magnitude of its size, rotations of 1 rad,
@@ -87,6 +87,11 @@ impl Magnitude {
     pub fn metric_round_off(&self, model: &Model, metric: &Metric, value: Option<f64>) -> f64 {
         let of_motion = self.round_off(model.metric_dimension(metric), 0);
         of_motion.max(VALUE * value.unwrap_or_default().abs())
+    }
+
+    /// Largest difference of two solved values of a quantity that is still round-off, SI, from one of them.
+    pub fn value_round_off(&self, quantity: Dimension, value: f64) -> f64 {
+        VALUE * self.of(quantity, 0).max(value.abs())
     }
 
     /// Largest change of the given time derivative of a quantity over a natural step that is still round-off, SI.

@@ -93,7 +93,7 @@ record! {
             _ => Vec::new(),
         };
         let change = steps()
-            .map(|k| (what_if.exact(k, m) - measured.value(k, m)[0], k))
+            .map(|k| (what_if.exact_change(k, m), k))
             .filter(|(change, _)| change.is_finite())
             .max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
     }

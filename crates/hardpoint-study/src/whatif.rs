@@ -11,6 +11,7 @@ use hardpoint::space::Vec3;
 
 use super::validity::linear_up_to;
 use hardpoint::run::SecondDerivatives;
+use hardpoint_difference::Magnitude;
 
 /// Changed design: nominal, predicted and exact curves.
 #[derive(Clone, Debug)]
@@ -25,6 +26,8 @@ pub struct WhatIf {
     bend: SecondDerivatives,
     /// Change divided by a natural step, for the variable with the largest such ratio.
     part: f64,
+    /// Magnitude of the nominal motion.
+    magnitude: Magnitude,
     /// Joints that the change opens in the design configuration, so that the mechanism has to be re-assembled; empty if
     /// the change as a whole is admissible.
     pub opens: Vec<JointDefect>,
@@ -45,8 +48,7 @@ pub struct PredictionQuality {
     /// Number of output times at which the change is known and a prediction is not, since there are no derivatives.
     pub unpredicted: usize,
     /// Factor by which the change can be scaled before its second-order part reaches 5 % of its first-order part;
-    /// infinite if it is exactly linear, `None` if the first-order part is negligible or the second-order part is
-    /// unknown.
+    /// infinite if it is exactly linear, `None` if the first-order part is round-off or the second-order part is unknown.
     pub linear_up_to: Option<f64>,
 }
 
@@ -74,6 +76,7 @@ pub fn what_if(analysis: &Analysis<'_>, today: Solution, change: &[f64]) -> What
         part: change.iter().enumerate().map(part).fold(0.0, f64::max),
         exact: analysis.solve(Run::new().at(&change).without_sensitivities()),
         bend: analysis.second(&[], std::slice::from_ref(&change), &[[0, 0]]),
+        magnitude: Magnitude::of_motion(model, &today.motion),
         opens: analysis.opens_along(&field),
         cannot_follow,
         change,
@@ -119,6 +122,19 @@ impl WhatIf {
         unwrapped_value(&self.today, &self.exact, k, m)
     }
 
+    /// Exact change of the value of output m at time k; 0 if it is round-off.
+    pub fn exact_change(&self, k: usize, m: usize) -> f64 {
+        self.settled(self.exact(k, m) - self.today.measured.value(k, m)[0], k, m)
+    }
+
+    /// Difference of two values of output m at time k; 0 if it is round-off.
+    fn settled(&self, by: f64, k: usize, m: usize) -> f64 {
+        let measured = &self.today.measured;
+        let dimension = measured.outputs[m].dimension;
+        let round_off = self.magnitude.value_round_off(dimension, measured.value(k, m)[0]);
+        if by.abs() <= round_off { 0.0 } else { by }
+    }
+
     /// Quality of the prediction of output m over the motion; `None` if nothing was predicted or solved.
     pub fn prediction_quality(&self, m: usize) -> Option<PredictionQuality> {
         if self.is_empty() || !self.cannot_follow.is_empty() {
@@ -130,14 +146,14 @@ impl WhatIf {
         let (mut change, mut first, mut second) = ((0.0_f64, 0), 0.0_f64, 0.0_f64);
         for k in 0..self.len() {
             let exact = self.exact(k, m);
-            let now = exact - self.today.measured.value(k, m)[0];
+            let now = self.exact_change(k, m);
             if now.is_nan() {
                 continue;
             }
             if now.abs() > change.0.abs() {
                 change = (now, k);
             }
-            let off = self.predicted(k, m).map(|predicted| (predicted - exact).abs());
+            let off = self.predicted(k, m).map(|predicted| self.settled(predicted - exact, k, m).abs());
             if off[..orders].iter().any(|off| off.is_nan()) {
                 unpredicted += 1;
                 continue;
@@ -151,7 +167,8 @@ impl WhatIf {
             // The first-order part scales with the change, the second-order part with its square.
             linear_up_to(first / self.part, second / (self.part * self.part)) / self.part
         };
-        let linear_up_to = (bends && first > 0.0).then(|| natural(first, second));
+        let round_off = self.magnitude.round_off(self.today.measured.outputs[m].dimension, 0) * self.part;
+        let linear_up_to = (bends && first > round_off).then(|| natural(first, second));
         Some(PredictionQuality { change, errors, unpredicted, linear_up_to })
     }
 }
