@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
-use hardpoint::model::{AllocationRule, SweepSettings, ToleranceSettings};
+use hardpoint::model::{AllocationRule, OptimizationSettings, SweepSettings, ToleranceSettings};
 use hardpoint::space::Angles;
 use hardpoint::topology::Formulation;
 use hardpoint_export::PdfPart;
@@ -397,6 +397,12 @@ fn pdf_part(text: &str) -> Result<PdfPart, String> {
     PdfPart::of(text).ok_or_else(|| format!("`{text}` is not a part of the report; give some of {names}"))
 }
 
+/// Help on the maximum number of iterations of an optimisation.
+fn iterations_help(of: &str) -> String {
+    let default = OptimizationSettings::ITERATIONS;
+    format!("Maximum number of iterations of {of} [default: that of the file, or {default}]")
+}
+
 const AFTER_CHECK: &str = "\
 Each design variable is one of:
   admissible     every joint stays closed with all bodies fixed
@@ -733,8 +739,8 @@ pub struct Optimize {
     /// Start with all drivers in the opposite sense too
     #[arg(long)]
     pub both_senses: bool,
-    /// Maximum number of iterations of a search [default: that of the file, or 100]
-    #[arg(long, value_name = "N")]
+    /// Maximum number of iterations of a search
+    #[arg(long, value_name = "N", help = iterations_help("a search"))]
     pub iterations: Option<NonZero<usize>>,
     /// Report and save the N-th of the distinct optima that the starts ended in [default: the best]
     #[arg(long, value_name = "N")]
@@ -903,8 +909,8 @@ pub struct TradeOff {
     /// Number of starts of the search for the optimum of each goal [default: that of the file, or 1]
     #[arg(long, value_name = "N")]
     pub starts: Option<NonZero<usize>>,
-    /// Maximum number of iterations of such a search [default: that of the file, or 100]
-    #[arg(long, value_name = "N")]
+    /// Maximum number of iterations of such a search
+    #[arg(long, value_name = "N", help = iterations_help("such a search"))]
     pub iterations: Option<NonZero<usize>>,
     /// Number of threads for several starts; the result does not depend on it [default: one per core]
     #[arg(long, value_name = "N")]

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::num::NonZero;
 use std::path::{Path, PathBuf};
 
+use hardpoint::model::OptimizationSettings;
 use hardpoint::topology::Formulation;
 use hardpoint_file::ModelFile;
 use hardpoint_report::ranges::RangeFact;
@@ -172,7 +173,10 @@ pub static TOOLS: &[Tool] = &[
                 may(
                     "iterations",
                     count(1),
-                    "Maximum number of iterations of a search. Default: that of the model, or 100",
+                    &format!(
+                        "Maximum number of iterations of a search. Default: that of the model, or {}",
+                        OptimizationSettings::ITERATIONS
+                    ),
                 ),
                 may(
                     "save",

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use hardpoint::model::OptimizationSettings;
+
 use crate::bench::Bench;
 
 /// Examples that take minutes, or need a server or a compiler.
@@ -68,6 +70,16 @@ fn examples(bench: &Bench, command: &str) -> Vec<String> {
         line[..end.unwrap_or(line.len())].to_owned()
     };
     found.iter().map(alone).collect()
+}
+
+#[test]
+fn the_default_number_of_iterations_is_that_of_the_file() {
+    let bench = Bench::with(&[]);
+    let default = OptimizationSettings::default().iterations;
+    for command in ["optimize", "trade-off"] {
+        let help = String::from_utf8(bench.run(&[command, "--help"]).stdout).unwrap();
+        assert!(help.contains(&format!("that of the file, or {default}]")), "{help}");
+    }
 }
 
 #[test]

@@ -1,5 +1,7 @@
 //! Settings of an optimisation as written.
 
+use crate::model::OptimizationSettings;
+
 /// Settings of an optimisation; see [`OptimizationSettings`](crate::model::OptimizationSettings).
 #[derive(Clone, Debug)]
 pub struct OptimizationSettingsDraft {
@@ -34,7 +36,7 @@ impl Default for OptimizationSettingsDraft {
             starts: 1,
             other_assemblies: false,
             both_senses: false,
-            iterations: 100,
+            iterations: OptimizationSettings::ITERATIONS,
             trade_off,
         }
     }

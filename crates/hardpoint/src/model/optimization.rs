@@ -27,6 +27,8 @@ pub struct OptimizationSettings {
 impl OptimizationSettings {
     /// Maximum number of starts, and of iterations of a search.
     pub const MOST: u32 = 100_000;
+    /// Default of the maximum number of iterations of a search.
+    pub const ITERATIONS: usize = 1000;
 }
 
 impl Default for OptimizationSettings {
@@ -39,7 +41,7 @@ impl Default for OptimizationSettings {
             starts: 1,
             other_assemblies: false,
             both_senses: false,
-            iterations: 1000,
+            iterations: Self::ITERATIONS,
             trade_off: Vec::new(),
         }
     }
