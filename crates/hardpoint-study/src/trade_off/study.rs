@@ -139,7 +139,7 @@ fn nearest_optimum(
     let limit_scales = limit_scales(memory.problem, &nominal.point);
     let count = nominal.goals.len();
     let steepest = nominal.steepest();
-    if steepest.iter().any(|s| *s == 0.0) {
+    if steepest.contains(&0.0) {
         return None;
     }
     let scale = Scale { zero: nominal.goals.clone(), range: steepest, steepest: vec![1.0; count] };
