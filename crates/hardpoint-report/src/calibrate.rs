@@ -545,8 +545,8 @@ impl CalibrationInputs<'_> {
         write_rows(out, &columns, rows)
     }
 
-    /// Writes the covariance of the variables over the determined directions: a row and a column for each, in products
-    /// of their units.
+    /// Writes the covariance of the variables over the directions with a standard deviation: a row and a column for
+    /// each, in products of their units.
     ///
     /// # Errors
     /// If `out` cannot be written.

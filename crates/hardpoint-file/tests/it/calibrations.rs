@@ -218,6 +218,102 @@ fn undetermined_changes_are_listed_and_stay_nominal() {
     assert!(found.next[0].determines.is_some(), "{:?}", found.next);
 }
 
+/// A trailing arm on one bushing.
+const ARM: &str = r#"
+name = "trailing arm"
+units = { length = "mm", angle = "deg" }
+parameters.kx = { value = 4200, design = true }
+parameters.kz = { value = 1200, design = true }
+parameters.kc = { value = 1.4, design = true }
+hardpoints = { pv = [400, 600, 50], w = [0, 740, 0] }
+bodies.arm = {}
+equilibrium = {}
+time = { end = 1, steps = 2 }
+[forces]
+bush = { type = "bushing", from = { body = "ground", at = "pv" }, to = { body = "arm", at = "pv" }, axis = "y", axis2 = "x", x = "kx", y = 3000, z = "kz", about_x = 200, about_y = 300, about_z = "kc", cubic_x = 100, curve_z = [[-2, -900], [-1, -200], [0, 0], [1, 200], [2, 900]] }
+sp = { type = "spring", from = { body = "ground", at = [50, 650, 400] }, to = { body = "arm", at = [60, 660, 30] }, stiffness = 40, preload = -3000 }
+road = { type = "wheel_force", wheel = "W", outboard = 1, law = "0" }
+brk = { type = "wheel_force", wheel = "W", forward = -1, law = "0" }
+[wheels.W]
+body = "arm"
+centre = "w"
+toe = 0
+camber = -1
+radius = 300
+measures = ["toe", "half_track"]
+"#;
+/// Its readings with kx = 5000 N/mm, kz = 900 N/mm and kc = 2 N m/deg, with noise of 0.01 deg and 0.05 mm.
+const ARM_READINGS: &str = "\
+road [kN],brk [N],W.toe [mrad],W.half_track [mm]
+0,0,-3.48459,745.0403
+0.2,0,0.69063,750.0769
+0.4,0,4.86572,755.2574
+0.6,0,9.24223,760.3161
+0.8,0,13.80484,765.5164
+1,0,18.19815,770.5745
+0,0,-3.70855,744.9646
+0,300,-5.81785,743.3283
+0,600,-7.38823,741.8058
+0,900,-9.33747,740.1093
+0,1200,-11.12272,738.5967
+0,1500,-13.17796,737.0745
+0,0,-3.67135,745.0190
+-0.16,300,-8.97675,739.2855
+-0.32,600,-14.76891,733.8450
+-0.48,900,-20.12771,728.6105
+-0.64,1200,-25.73310,723.5691
+-0.8,1500,-31.46940,718.6378
+";
+
+#[test]
+fn the_fit_does_not_follow_changes_that_are_not_determined() {
+    let file = parse(ARM, "arm.toml").unwrap_or_else(|e| panic!("{e}"));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("arm.csv");
+    std::fs::write(&path, ARM_READINGS).unwrap();
+    let sigmas = [("W.toe".into(), 0.01), ("W.half_track".into(), 0.05)];
+    let measured = file.measured(&path, &sigmas).unwrap_or_else(|e| panic!("{e}")).measurements;
+    let [kx, kz, kc] = ["kx", "kz", "kc"].map(|name| file.model.variable(name).unwrap());
+    let found = fitted_by(&file.model, &measured, &[kx, kz, kc], Loss::Squares).unwrap();
+    let fixed = fitted_by(&file.model, &measured, &[kz, kc], Loss::Squares).unwrap();
+    assert_eq!((found.status, found.certainty.unidentifiable.len()), (Status::Found, 1));
+    assert!(found.cost.designs <= MOST_DESIGNS, "{:?}", found.cost);
+    // The stiffness without effect remains nominal; the fit is that of the two others.
+    let nominal = file.model.nominal_value(kx);
+    assert!(found.estimates[0].abs() < 1e-2 * nominal, "{:?}", found.estimates);
+    assert!((found.objective[1] - fixed.objective[1]).abs() < 0.01, "{:?}", found.objective);
+    assert_eq!(found.certainty.sigmas[0], None);
+    for k in 0..2 {
+        let [sigma, of_fixed] =
+            [found.certainty.sigmas[k + 1], fixed.certainty.sigmas[k]].map(Option::unwrap);
+        assert!(sigma > 0.99 * of_fixed && sigma < 1.5 * of_fixed, "{sigma} {of_fixed}");
+        assert!((found.estimates[k + 1] - fixed.estimates[k]).abs() < 0.5 * of_fixed);
+    }
+}
+
+#[test]
+fn readings_that_contradict_the_nominal_design_are_followed() {
+    // At its nominal stiffness the joint hardly moves, so that readings determine the stiffness by no more than itself.
+    let stiff = parse(&LEVER.replace("kx = { value = 300", "kx = { value = 9000"), "stiff.toml");
+    let model = stiff.unwrap_or_else(|e| panic!("{e}")).model;
+    let (soft, sigma) = (parse(LEVER, "lever.toml").unwrap_or_else(|e| panic!("{e}")).model, 1e-5);
+    let tip = outputs(&model).iter().position(|output| output.name == "tip.x").unwrap();
+    let moved = soft.in_case(CaseId(0));
+    let solution = Analysis::with(&moved, Formulation::Relative).unwrap().run();
+    let mut measured = Measurements::default();
+    for (k, t) in moved.times.iter().enumerate() {
+        measured.postures.push(Vec::new());
+        let laws = &soft.cases[0].force_laws;
+        measured.forces.push(laws.iter().map(|(e, law)| (*e, law.at(*t).value())).collect());
+        let value = solution.measured.value(k, tip)[0];
+        measured.readings.push(Reading { posture: k, output: tip, value, sigma: Some(sigma) });
+    }
+    let found = fitted_by(&model, &measured, &[model.variable("kx").unwrap()], Loss::Squares).unwrap();
+    assert_eq!((found.status, found.certainty.unidentifiable.len()), (Status::Found, 0));
+    let [nominal, hidden] = [&model, &soft].map(|m| m.nominal_value(m.variable("kx").unwrap()));
+    assert!((nominal + found.estimates[0] - hidden).abs() < 1e-6 * hidden, "{:?}", found.estimates);
+}
+
 #[test]
 fn a_robust_loss_resists_outliers() {
     let model = crank();

@@ -1,12 +1,10 @@
 //! Accuracy of the fitted variables: covariance, and changes that cannot be identified.
 
-use super::fit::{FitWorkspace, SearchResult, free, information};
+use super::fit::{FitWorkspace, SearchResult, VAGUE, free, information};
 use super::parameter::BoundSide;
 use hardpoint_search::{dot, independent};
 
-/// A direction with a standard deviation of more natural steps than this (about the mechanism's size) is not reported.
-const VAGUE: f64 = 1.0;
-/// Largest component of a variable in unreported directions at which its accuracy is still reported.
+/// Largest component of a variable in directions without a standard deviation at which its accuracy is still reported.
 const PART: f64 = 1e-6;
 
 /// The readings determine a direction if at least this part of the information about it is theirs, otherwise the
@@ -25,7 +23,8 @@ pub struct Certainty {
     pub prior_means: Vec<Option<f64>>,
     /// Bounds that the fitted parameters are at.
     pub bounds: Vec<Option<BoundSide>>,
-    /// Covariance of the fitted variables over the reported directions; NaN where the search got stuck.
+    /// Covariance of the fitted variables over the directions that have a standard deviation; NaN where the search got
+    /// stuck.
     pub covariance: Vec<Vec<f64>>,
     /// Changes that the readings do not determine.
     pub unidentifiable: Vec<UnidentifiableChange>,
@@ -67,8 +66,11 @@ impl Directions {
         self.unidentifiable.iter().all(|(v, _)| dot(g, v).abs() <= PART * size)
     }
 
+    /// Covariance over all directions that have a standard deviation.
     pub fn covariance(&self, n: usize) -> Vec<Vec<f64>> {
-        let entry = |i: usize, j: usize| self.reported.iter().map(|(v, s)| v[i] * v[j] * s * s).sum();
+        let vague = self.unidentifiable.iter().filter_map(|(v, s)| Some((v, (*s)?)));
+        let all: Vec<_> = self.reported.iter().map(|(v, s)| (v, *s)).chain(vague).collect();
+        let entry = |i: usize, j: usize| all.iter().map(|(v, s)| v[i] * v[j] * s * s).sum();
         (0..n).map(|i| (0..n).map(|j| entry(i, j)).collect()).collect()
     }
 }
@@ -80,12 +82,12 @@ impl FitWorkspace<'_> {
         let mut directions = Directions::default();
         let mut by_prior = Vec::new();
         for (v, s) in found.directions {
-            let sigma = search.scale / s;
-            // Directions of a fit with priors are not of unit length.
-            let length = if self.priors.is_empty() { 1.0 } else { dot(&v, &v).sqrt() };
-            if self.has_sigmas && sigma * length > VAGUE {
-                let unit = v.iter().map(|x| x / length).collect();
-                directions.unidentifiable.push((unit, Some(sigma * length)));
+            let (sigma, length) = (search.scale / s, self.length(&v));
+            let direction = (v, s);
+            let vague = self.vague_sigma(&direction, search.scale);
+            let (v, s) = direction;
+            if vague.is_some() {
+                directions.unidentifiable.push((v.iter().map(|x| x / length).collect(), vague));
                 continue;
             }
             if !self.priors.is_empty() && information(&search.at, &search.weights, &v) < OF_READINGS * s * s {
@@ -109,8 +111,14 @@ impl FitWorkspace<'_> {
     /// Accuracy of the parameters at the end of a search.
     pub(super) fn certainty(&self, search: &SearchResult, directions: &Directions) -> Certainty {
         let n = self.parameters.len();
-        let unidentifiable_part =
-            |k: usize| directions.unidentifiable.iter().map(|(v, _)| v[k].abs()).fold(0.0, f64::max);
+        // Along a change that is not determined, a variable with a small part in it is known nevertheless.
+        let is_determined = |k: usize| {
+            let part = |(v, sigma): &(Vec<f64>, Option<f64>)| match sigma {
+                Some(sigma) => v[k].abs() * sigma / VAGUE,
+                None => v[k].abs() / PART,
+            };
+            directions.unidentifiable.iter().all(|of| part(of) <= 1.0)
+        };
         let is_off = !search.status.has_covariance();
         let in_steps = match is_off {
             true => vec![vec![f64::NAN; n]; n],
@@ -119,7 +127,7 @@ impl FitWorkspace<'_> {
         let covariance = (0..n)
             .map(|i| (0..n).map(|j| in_steps[i][j] * self.steps[i] * self.steps[j]).collect::<Vec<f64>>())
             .collect::<Vec<_>>();
-        let is_known = |k: usize| !is_off && unidentifiable_part(k) <= PART && search.active[k].is_none();
+        let is_known = |k: usize| !is_off && is_determined(k) && search.active[k].is_none();
         let sigma = |k: usize| is_known(k).then(|| covariance[k][k].sqrt());
         let sigmas = (0..n).map(sigma).collect();
         let unidentifiable = |(v, sigma): &(Vec<f64>, Option<f64>)| {

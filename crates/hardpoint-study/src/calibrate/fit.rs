@@ -28,6 +28,12 @@ const FARTHEST: f64 = 10.0;
 const RUNAWAY: f64 = 1e6;
 /// A singular value below this fraction of the largest is round-off: the readings do not determine its direction.
 const ROUND_OFF: f64 = 1e-9;
+/// A direction with a standard deviation of more natural steps than this (about the mechanism's size) is not
+/// determined.
+pub(super) const VAGUE: f64 = 1.0;
+/// Distance of the nominal design from the best one along such a direction, in standard deviations, above which the
+/// readings contradict it.
+const CONTRADICTED: f64 = 3.0;
 /// The objective has converged if an iteration lowers it by less than this fraction.
 const SETTLED: f64 = 1e-12;
 /// Round-off of a solved value, as a fraction of it and of the magnitude of its quantity in the mechanism: positions,
@@ -80,6 +86,8 @@ pub(super) struct FitWorkspace<'b> {
     pub cost: RefCell<StudyCost>,
     /// Number of designs of the current iteration without residuals or without their derivatives.
     refused: Cell<usize>,
+    /// True if the fit follows directions that are not determined where the readings contradict the nominal design.
+    follows_contradicted: Cell<bool>,
 }
 
 /// Status of a fit at its end.
@@ -108,7 +116,16 @@ impl Status {
     }
 }
 
-/// State of a search.
+/// State between the iterations of a search; its fields are those of [`SearchResult`].
+struct SearchState {
+    x: Vec<f64>,
+    at: Rows,
+    weights: Vec<f64>,
+    scale: f64,
+    iterations: Vec<f64>,
+}
+
+/// State at the end of a search.
 pub(super) struct SearchResult {
     pub status: Status,
     /// Changes from the nominal design, in natural steps.
@@ -128,6 +145,8 @@ pub(super) struct SearchResult {
 /// Residuals of the readings with their derivatives, and residuals of the priors.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rows {
+    /// Design: changes from the nominal one, in natural steps.
+    x: Vec<f64>,
     pub r: Vec<f64>,
     pub d: Vec<Vec<f64>>,
     /// Residuals of the priors, in their standard deviations.
@@ -173,6 +192,7 @@ impl<'b> FitWorkspace<'b> {
             round_off: 0.0,
             cost: RefCell::new(StudyCost { designs: 1, ..StudyCost::default() }),
             refused: Cell::new(0),
+            follows_contradicted: Cell::new(false),
         }
     }
 
@@ -375,7 +395,7 @@ impl<'b> FitWorkspace<'b> {
     }
 
     fn rows(&self, postures: &[Option<ReachedPosture>], x: &[f64]) -> Rows {
-        let mut rows = Rows { priors: self.priors.residuals(x), ..Rows::default() };
+        let mut rows = Rows { x: x.to_vec(), priors: self.priors.residuals(x), ..Rows::default() };
         for k in &self.compared {
             let reading = &self.readings()[*k];
             let posture =
@@ -467,6 +487,42 @@ impl<'b> FitWorkspace<'b> {
         determined
     }
 
+    /// Standard deviation along a direction `(v, |J v|)`, in natural steps, if the direction is not determined.
+    pub fn vague_sigma(&self, (v, s): &(Vec<f64>, f64), scale: f64) -> Option<f64> {
+        let sigma = scale / s * self.length(v);
+        (self.has_sigmas && sigma > VAGUE).then_some(sigma)
+    }
+
+    /// Length of a direction; those of a fit with priors are not of unit length.
+    pub fn length(&self, v: &[f64]) -> f64 {
+        if self.priors.is_empty() { 1.0 } else { dot(v, v).sqrt() }
+    }
+
+    /// Component of the residuals along the image of a direction `(v, s)`, with `s = |J v|`: `u . r` with `u = J v / s`.
+    fn component(&self, at: &Rows, weights: &[f64], scale: f64, (v, s): &(Vec<f64>, f64)) -> f64 {
+        let of_readings = at.d.iter().zip(&at.r).zip(weights).map(|((row, r), w)| w * r * dot(row, v));
+        let of_priors = self.priors.a.iter().zip(&at.priors).map(|(a, r)| scale * scale * r * dot(a, v));
+        (of_readings.sum::<f64>() + of_priors.sum::<f64>()) / s
+    }
+
+    /// True if the readings contradict the design along a direction.
+    fn is_contradicted(&self, at: &Rows, weights: &[f64], scale: f64, direction: &(Vec<f64>, f64)) -> bool {
+        self.component(at, weights, scale, direction).abs() > CONTRADICTED * scale
+    }
+
+    /// Determined directions over the free parameters that the fit follows, and those that it does not: the design
+    /// remains nominal along a direction that is not determined, unless the readings contradict it there.
+    fn followed(&self, at: &Rows, weights: &[f64], scale: f64, free: &[usize]) -> [Vec<(Vec<f64>, f64)>; 2] {
+        let is_followed = |direction: &(Vec<f64>, f64)| {
+            self.vague_sigma(direction, scale).is_none()
+                || dot(&direction.0, &at.x).abs() > VAGUE * self.length(&direction.0)
+                || (self.follows_contradicted.get() && self.is_contradicted(at, weights, scale, direction))
+        };
+        let (followed, others) =
+            self.determined(at, weights, scale, free).directions.into_iter().partition(is_followed);
+        [followed, others]
+    }
+
     /// Number of parameters that the readings determine, as the trace of their part of the information:
     /// `sum |J v|^2 / s^2`; the number of directions without priors. A parameter at its bound is fixed.
     fn effective(&self, x: &[f64], at: &Rows, weights: &[f64], scale: f64) -> f64 {
@@ -480,13 +536,9 @@ impl<'b> FitWorkspace<'b> {
     /// Undamped step of all parameters at a point.
     fn undamped_step(&self, at: &Rows, weights: &[f64], scale: f64) -> UndampedStep {
         let all: Vec<usize> = (0..self.parameters.len()).collect();
-        let directions = self.determined(at, weights, scale, &all).directions;
-        let component = |(v, s): &(Vec<f64>, f64)| {
-            let of_readings = at.d.iter().zip(&at.r).zip(weights).map(|((row, r), w)| w * r * dot(row, v));
-            let of_priors = self.priors.a.iter().zip(&at.priors).map(|(a, r)| scale * scale * r * dot(a, v));
-            (of_readings.sum::<f64>() + of_priors.sum::<f64>()) / s
-        };
-        let components: Vec<f64> = directions.iter().map(component).collect();
+        let [directions, _] = self.followed(at, weights, scale, &all);
+        let components: Vec<f64> =
+            directions.iter().map(|of| self.component(at, weights, scale, of)).collect();
         let by = dot(&components, &components);
         let decrease = if by <= self.round_off { 0.0 } else { by / Self::squares(at, weights, scale) };
         UndampedStep { directions, components, decrease }
@@ -528,63 +580,26 @@ impl<'b> FitWorkspace<'b> {
     /// Fits from the nominal design until no small change improves the fit.
     pub fn search(&self, progress: &mut dyn FnMut(usize, f64), more: &dyn Fn() -> bool) -> SearchResult {
         let n = self.parameters.len();
-        let mut x = vec![0.0; n];
-        let mut at = self.rows(&self.nominal, &x);
+        let x = vec![0.0; n];
+        let at = self.rows(&self.nominal, &x);
         let mut scale = self.scale_of(&at.r, || n as f64);
-        let mut weights = self.weights(&at.r, scale);
+        let weights = self.weights(&at.r, scale);
         scale = self.scale_of(&at.r, || self.effective(&x, &at, &weights, scale));
-        let mut status = Status::IterationLimit;
-        let mut iterations = Vec::new();
-        // Weights of a robust loss follow each step, and bounds limit it.
-        let mut near = if self.request.loss == Loss::Squares && !self.is_bounded() { NEAR } else { 0.0 };
         let first = at.clone();
         progress(0, Self::squares(&at, &weights, scale) / (scale * scale));
-        while iterations.len() < self.request.iterations {
-            self.refused.set(0);
-            let before = Self::squares(&at, &weights, scale);
-            let mut undamped = self.undamped_step(&at, &weights, scale);
-            if undamped.decrease <= near {
-                if self.last_steps((&mut x, &mut at, &mut undamped), &weights, scale, more) {
-                    scale = self.scale_of(&at.r, || self.effective(&x, &at, &weights, scale));
-                    status = Status::Found;
-                    break;
-                }
-                // Undamped steps do not lead there.
-                near = 0.0;
-            } else if undamped.decrease <= SETTLED {
-                status = Status::Found;
-                break;
-            }
-            let step = if self.is_bounded() {
-                self.bounded_step(&x, &at, &weights, scale, more)
-            } else {
-                self.step(&x, &at, (&weights, scale, near), &undamped.directions, more)
-            };
-            if !more() {
-                status = Status::Interrupted;
-                break;
-            }
-            let Some((next, rows)) = step.filter(|(_, rows)| Self::squares(rows, &weights, scale) < before)
-            else {
-                status = self.status_at_rest(&x, &at, &weights, scale);
-                break;
-            };
-            let after = Self::squares(&rows, &weights, scale);
-            (x, at) = (next, rows);
-            let scaled_before = scale;
-            scale = self.scale_of(&at.r, || self.effective(&x, &at, &weights, scale));
-            let old = std::mem::replace(&mut weights, self.weights(&at.r, scale));
-            let settled = weights.iter().zip(&old).all(|(a, b)| (a - b).abs() <= SETTLED.sqrt());
-            iterations.push(Self::squares(&at, &weights, scale) / (scale * scale));
-            progress(iterations.len(), *iterations.last().expect("it was just put there"));
-            if before - after <= SETTLED * before
-                && settled
-                && (scale - scaled_before).abs() <= SETTLED.sqrt() * scale
-            {
-                status = self.status_at_rest(&x, &at, &weights, scale);
-                break;
-            }
+        let mut state = SearchState { x, at, weights, scale, iterations: Vec::new() };
+        let mut status = self.descend(&mut state, progress, more);
+        // Only where all other directions are at their optimum do the readings contradict the nominal design along one.
+        let contradicted = || {
+            let SearchState { x, at, weights, scale, .. } = &state;
+            let [_, others] = self.followed(at, weights, *scale, &free(&self.active_bounds(x)));
+            others.iter().any(|of| self.is_contradicted(at, weights, *scale, of))
+        };
+        if status == Status::Found && contradicted() {
+            self.follows_contradicted.set(true);
+            status = self.descend(&mut state, progress, more);
         }
+        let SearchState { x, at, weights, scale, iterations } = state;
         let of = |at: &Rows| self.loss_of(&at.r, scale) + at.priors.iter().map(|r| r * r).sum::<f64>();
         let objective = [of(&first), of(&at)];
         let status = match status {
@@ -601,11 +616,67 @@ impl<'b> FitWorkspace<'b> {
         SearchResult { status, x, at, weights, active, scale, objective, iterations }
     }
 
+    /// Improves the fit along the directions that it follows until no small change does.
+    fn descend(
+        &self,
+        SearchState { x, at, weights, scale, iterations }: &mut SearchState,
+        progress: &mut dyn FnMut(usize, f64),
+        more: &dyn Fn() -> bool,
+    ) -> Status {
+        // Weights of a robust loss follow each step, and bounds limit it.
+        let mut near = if self.request.loss == Loss::Squares && !self.is_bounded() { NEAR } else { 0.0 };
+        while iterations.len() < self.request.iterations {
+            self.refused.set(0);
+            let before = Self::squares(at, weights, *scale);
+            let mut undamped = self.undamped_step(at, weights, *scale);
+            if undamped.decrease <= near {
+                if self.last_steps((x, at, &mut undamped), weights, *scale, more) {
+                    *scale = self.scale_of(&at.r, || self.effective(x, at, weights, *scale));
+                    return Status::Found;
+                }
+                // Undamped steps do not lead there.
+                near = 0.0;
+            } else if undamped.decrease <= SETTLED {
+                return Status::Found;
+            }
+            let step = if self.is_bounded() {
+                self.bounded_step(x, at, weights, *scale, more)
+            } else {
+                self.step(x, at, (weights, *scale, near), &undamped.directions, more)
+            };
+            if !more() {
+                return Status::Interrupted;
+            }
+            let Some((next, rows)) = step.filter(|(_, rows)| Self::squares(rows, weights, *scale) < before)
+            else {
+                return self.status_at_rest(x, at, weights, *scale);
+            };
+            let after = Self::squares(&rows, weights, *scale);
+            (*x, *at) = (next, rows);
+            let scaled_before = *scale;
+            *scale = self.scale_of(&at.r, || self.effective(x, at, weights, *scale));
+            let old = std::mem::replace(weights, self.weights(&at.r, *scale));
+            let settled = weights.iter().zip(&old).all(|(a, b)| (a - b).abs() <= SETTLED.sqrt());
+            iterations.push(Self::squares(at, weights, *scale) / (*scale * *scale));
+            progress(iterations.len(), *iterations.last().expect("it was just put there"));
+            if before - after <= SETTLED * before
+                && settled
+                && (*scale - scaled_before).abs() <= SETTLED.sqrt() * *scale
+            {
+                return self.status_at_rest(x, at, weights, *scale);
+            }
+        }
+        Status::IterationLimit
+    }
+
     /// Status of a search without further progress. A design is no optimum if the linearised problem predicts a better
     /// one and designs on the way there were not reached or have no derivatives.
     fn status_at_rest(&self, x: &[f64], at: &Rows, weights: &[f64], scale: f64) -> Status {
         let (rows, right) = self.linearised(at, weights, scale);
-        let undamped = |free: &[usize]| self.determined(at, weights, scale, free).directions;
+        let undamped = |free: &[usize]| {
+            let [followed, _] = self.followed(at, weights, scale, free);
+            followed
+        };
         let best = bounded_least_squares(x, &rows, &right, &self.bounds, &undamped);
         let by: Vec<f64> = best.iter().zip(x).map(|(best, x)| best - x).collect();
         let after: f64 = rows.iter().zip(&right).map(|(row, r)| (dot(row, &by) + r).powi(2)).sum();
@@ -645,7 +716,10 @@ impl<'b> FitWorkspace<'b> {
         let (mut rows, mut right) = self.linearised(at, weights, scale);
         let columns: Vec<f64> =
             (0..n).map(|k| rows.iter().map(|row| row[k] * row[k]).sum::<f64>().sqrt()).collect();
-        let undamped = |free: &[usize]| self.determined(at, weights, scale, free).directions;
+        let undamped = |free: &[usize]| {
+            let [followed, _] = self.followed(at, weights, scale, free);
+            followed
+        };
         let first = bounded_least_squares(x, &rows, &right, &self.bounds, &undamped);
         let better = |x: Vec<f64>| {
             let rows = self.rows_at(&x, more)?;
@@ -667,15 +741,25 @@ impl<'b> FitWorkspace<'b> {
                 row[k] = damping * if columns[k] > 0.0 { columns[k] } else { 1.0 };
             }
             let damped = |free: &[usize]| {
-                let part: Vec<Vec<f64>> =
-                    rows.iter().map(|row| free.iter().map(|k| row[*k]).collect()).collect();
-                let found = singular(&part, free.len());
+                let part = |row: &Vec<f64>| free.iter().map(|k| row[*k]).collect::<Vec<f64>>();
+                // Without the components along directions that the fit does not follow
+                let [_, others] = self.followed(at, weights, scale, free);
+                let others: Vec<Vec<f64>> = others.iter().map(|(v, _)| part(v)).collect();
+                let span = &singular(&others, free.len()).directions[..others.len()];
+                let without = |row: &Vec<f64>| {
+                    span.iter().fold(part(row), |row, v| {
+                        let by = dot(&row, v);
+                        row.iter().zip(v).map(|(x, v)| x - by * v).collect()
+                    })
+                };
+                let found = singular(&rows.iter().map(without).collect::<Vec<_>>(), free.len());
                 let whole = |(s, v): (f64, &Vec<f64>)| {
                     let mut whole = vec![0.0; n];
                     free.iter().zip(v).for_each(|(k, v)| whole[*k] = *v);
                     (whole, s)
                 };
-                found.values.into_iter().zip(&found.directions).map(whole).collect()
+                let followed = free.len() - others.len();
+                found.values.into_iter().zip(&found.directions).take(followed).map(whole).collect()
             };
             let next = bounded_least_squares(x, &rows, &right, &self.bounds, &damped);
             if let Some(found) = better(next) {
