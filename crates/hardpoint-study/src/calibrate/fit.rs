@@ -86,8 +86,6 @@ pub(super) struct FitWorkspace<'b> {
     pub cost: RefCell<StudyCost>,
     /// Number of designs of the current iteration without residuals or without their derivatives.
     refused: Cell<usize>,
-    /// True if the fit follows directions that are not determined where the readings contradict the nominal design.
-    follows_contradicted: Cell<bool>,
 }
 
 /// Status of a fit at its end.
@@ -192,7 +190,6 @@ impl<'b> FitWorkspace<'b> {
             round_off: 0.0,
             cost: RefCell::new(StudyCost { designs: 1, ..StudyCost::default() }),
             refused: Cell::new(0),
-            follows_contradicted: Cell::new(false),
         }
     }
 
@@ -505,18 +502,13 @@ impl<'b> FitWorkspace<'b> {
         (of_readings.sum::<f64>() + of_priors.sum::<f64>()) / s
     }
 
-    /// True if the readings contradict the design along a direction.
-    fn is_contradicted(&self, at: &Rows, weights: &[f64], scale: f64, direction: &(Vec<f64>, f64)) -> bool {
-        self.component(at, weights, scale, direction).abs() > CONTRADICTED * scale
-    }
-
     /// Determined directions over the free parameters that the fit follows, and those that it does not: the design
     /// remains nominal along a direction that is not determined, unless the readings contradict it there.
     fn followed(&self, at: &Rows, weights: &[f64], scale: f64, free: &[usize]) -> [Vec<(Vec<f64>, f64)>; 2] {
         let is_followed = |direction: &(Vec<f64>, f64)| {
             self.vague_sigma(direction, scale).is_none()
                 || dot(&direction.0, &at.x).abs() > VAGUE * self.length(&direction.0)
-                || (self.follows_contradicted.get() && self.is_contradicted(at, weights, scale, direction))
+                || self.component(at, weights, scale, direction).abs() > CONTRADICTED * scale
         };
         let (followed, others) =
             self.determined(at, weights, scale, free).directions.into_iter().partition(is_followed);
@@ -588,17 +580,7 @@ impl<'b> FitWorkspace<'b> {
         let first = at.clone();
         progress(0, Self::squares(&at, &weights, scale) / (scale * scale));
         let mut state = SearchState { x, at, weights, scale, iterations: Vec::new() };
-        let mut status = self.descend(&mut state, progress, more);
-        // Only where all other directions are at their optimum do the readings contradict the nominal design along one.
-        let contradicted = || {
-            let SearchState { x, at, weights, scale, .. } = &state;
-            let [_, others] = self.followed(at, weights, *scale, &free(&self.active_bounds(x)));
-            others.iter().any(|of| self.is_contradicted(at, weights, *scale, of))
-        };
-        if status == Status::Found && contradicted() {
-            self.follows_contradicted.set(true);
-            status = self.descend(&mut state, progress, more);
-        }
+        let status = self.descend(&mut state, progress, more);
         let SearchState { x, at, weights, scale, iterations } = state;
         let of = |at: &Rows| self.loss_of(&at.r, scale) + at.priors.iter().map(|r| r * r).sum::<f64>();
         let objective = [of(&first), of(&at)];
