@@ -177,7 +177,15 @@ static FORMS: &[(Table, Read)] = &[
         },
         |r, fields, place, raw| {
             let sides = r.given(fields, "box", |r, f| {
-                r.quantities::<3>(f.value, &fields.subject("box"), "three lengths", LENGTH)
+                let subject = fields.subject("box");
+                let sides = r.quantities::<3>(f.value, &subject, "three lengths", LENGTH)?;
+                if let Some(k) = sides.iter().position(|side| !(*side > 0.0)) {
+                    let message = format!("{} is not positive", subject.item(k).name);
+                    r.report("HP0263", f.value.span(), message).help =
+                        Some("give three positive lengths, in the file's length unit".into());
+                    return None;
+                }
+                Some(sides)
             });
             let frame = match fields.get("frame") {
                 Some(_) => r.given(fields, "frame", |r, f| bodies::frame(r, fields, f, place, raw))?,

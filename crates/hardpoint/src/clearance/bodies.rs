@@ -200,7 +200,8 @@ impl MovingSegment {
 /// that carries one of them turns out of it.
 pub(super) fn leave_their_plane(segments: [&MovingSegment; 2], at: Vec3) -> bool {
     let [e, f] = number::both(segments, |s| s.ends[1] - s.ends[0]);
-    let Some(normal) = e.cross(f).unit() else { return false };
+    let [u, v] = number::both([e, f], |e| e * (1.0 / e.norm()));
+    let Some(normal) = u.cross(v).unit() else { return false };
     let velocities = segments.map(MovingSegment::velocities);
     // Velocities of the lines' own points at the crossing, and the ends' velocities relative to each other.
     let crossing = number::both([0, 1], |k| {

@@ -227,7 +227,7 @@ impl Surface {
         self.vertex_normals = vec![Vec3::ZERO; self.vertices.len()];
         for corners in &self.triangles {
             let [a, b, c] = number::each(corners, |k| self.vertices[k as usize]);
-            let Some(normal) = (b - a).cross(c - a).unit() else { continue };
+            let Some(normal) = normal_of([a, b, c]) else { continue };
             for k in 0..3 {
                 let (here, next, other) = (corners[k], corners[(k + 1) % 3], corners[(k + 2) % 3]);
                 let [at, p, q] = number::each(&[here, next, other], |k| self.vertices[k as usize]);
@@ -424,6 +424,12 @@ pub fn nearest_of_triangle(p: Vec3, [a, b, c]: [Vec3; 3], [i, j, k]: [u32; 3]) -
     edges.into_iter().reduce(|a, b| if apart(&b) < apart(&a) { b } else { a }).expect("three edges")
 }
 
+/// Unit normal of a triangle of any size; `None` if its corners are on one line.
+fn normal_of([a, b, c]: [Vec3; 3]) -> Option<Vec3> {
+    let [u, v] = number::both([b - a, c - a], |e| e * (1.0 / e.norm()));
+    u.cross(v).unit()
+}
+
 /// Facets of the convex hull of points, as triangles that face outward; `None` if the points lie in one plane. Several
 /// triangles may cover the same facet of more than three points.
 pub fn hull(points: &[Vec3]) -> Option<Vec<[u32; 3]>> {
@@ -435,7 +441,7 @@ pub fn hull(points: &[Vec3]) -> Option<Vec<[u32; 3]>> {
         for j in i + 1..count {
             for k in j + 1..count {
                 let [a, b, c] = number::each(&[i, j, k], |n| points[n as usize]);
-                let Some(normal) = (b - a).cross(c - a).unit() else { continue };
+                let Some(normal) = normal_of([a, b, c]) else { continue };
                 let heights = || points.iter().map(|p| normal.dot(*p - a));
                 let (most, least) = (heights().fold(0.0, f64::max), heights().fold(0.0, f64::min));
                 if most <= within && least < -within {

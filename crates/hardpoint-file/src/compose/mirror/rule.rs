@@ -67,6 +67,8 @@ impl<'n> Rule<'n> {
                     *word = Cow::Owned(format!("{minus}{letter}"));
                 }
             }
+            // The lengths of a box have no direction.
+            Leaf::Vector(_) if key == "box" => {}
             Leaf::Vector(list) => {
                 let turned = turns(key);
                 each(list, self.numbers, |k| (k == self.across) != turned);
