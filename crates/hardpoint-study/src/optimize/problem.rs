@@ -408,6 +408,7 @@ impl<'m> Problem<'m> {
                 Limited::Metric(entry) => {
                     let value = self.metric(entry, &found)?;
                     self.add_limit(place, *limit, value, Some(entry), &found, &mut point);
+                    self.check_limit(place, entry, &found, &mut point)?;
                 }
                 Limited::Margin(motion) => self.add_margins(place, *limit, motion, &found, &mut point)?,
             }
@@ -564,27 +565,52 @@ impl<'m> Problem<'m> {
     fn metric(&self, entry: MotionMetric, found: &DesignEvaluation) -> Result<(f64, Vec<f64>), Refusal> {
         let value = &found.metrics[entry.motion][entry.metric];
         let (model, solution) = (self.motions.model(entry.motion), &found.solutions[entry.motion]);
-        let Metric { name, of, over, .. } = &model.metrics[entry.metric];
-        let refusal = |why: String| Refusal { motion: Some(entry.motion), why, interrupted: false };
         let Some(x) = value.value else {
-            return Err(refusal(format!(
-                "the motion does not reach the place where metric `{name}` is taken"
-            )));
+            let name = &model.metrics[entry.metric].name;
+            let why = format!("the motion does not reach the place where metric `{name}` is taken");
+            return Err(Refusal { motion: Some(entry.motion), why, interrupted: false });
         };
         let d = self.searched(&value.d);
-        if let Some(v) = d.iter().position(|d| !d.is_finite()) {
-            let searched = self.settings.variables[v];
-            let variable = &self.model.variables[searched.0].name;
-            let known = solution.sensitivities.admissibility.get(searched.0);
-            let why = if matches!(known, Some(Admissibility::CannotFollow { .. })) {
-                "which the mechanism cannot follow".to_owned()
-            } else {
-                let over = over.map_or(String::new(), |over| format!(" or `{}`", model.output_name(over)));
-                format!("since `{}`{over} has none there", model.output_name(*of))
-            };
-            return Err(refusal(format!("metric `{name}` has no derivative by `{variable}`, {why}")));
+        match d.iter().position(|d| !d.is_finite()) {
+            Some(v) => Err(self.without_derivative(entry, v, solution)),
+            None => Ok((x, d)),
         }
-        Ok((x, d))
+    }
+
+    /// Rejects a design that exceeds a limit at a place without derivatives, from which no direction is known. Elsewhere
+    /// such a place keeps the limit, and is constant to first order.
+    fn check_limit(
+        &self,
+        place: usize,
+        entry: MotionMetric,
+        found: &DesignEvaluation,
+        point: &mut Point,
+    ) -> Result<(), Refusal> {
+        for row in point.limits.iter_mut().filter(|row| row.of == place) {
+            let Some(v) = row.d.iter().position(|d| !d.is_finite()) else { continue };
+            if row.equal || row.exceeds > 0.0 {
+                return Err(self.without_derivative(entry, v, &found.solutions[entry.motion]));
+            }
+            row.d.fill(0.0);
+        }
+        Ok(())
+    }
+
+    /// Reason why a metric has no derivative by a searched variable.
+    fn without_derivative(&self, entry: MotionMetric, searched: usize, solution: &Solution) -> Refusal {
+        let model = self.motions.model(entry.motion);
+        let Metric { name, of, over, .. } = &model.metrics[entry.metric];
+        let searched = self.settings.variables[searched];
+        let variable = &self.model.variables[searched.0].name;
+        let known = solution.sensitivities.admissibility.get(searched.0);
+        let why = if matches!(known, Some(Admissibility::CannotFollow { .. })) {
+            "which the mechanism cannot follow".to_owned()
+        } else {
+            let over = over.map_or(String::new(), |over| format!(" or `{}`", model.output_name(over)));
+            format!("since `{}`{over} has none there", model.output_name(*of))
+        };
+        let why = format!("metric `{name}` has no derivative by `{variable}`, {why}");
+        Refusal { motion: Some(entry.motion), why, interrupted: false }
     }
 
     fn searched(&self, d: &[f64]) -> Vec<f64> {
