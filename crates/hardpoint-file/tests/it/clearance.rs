@@ -7,7 +7,7 @@ use std::time::Duration;
 use hardpoint::Analysis;
 use hardpoint::model::Model;
 use hardpoint::motion::StopKind;
-use hardpoint::run::{ClearanceProof, Clearances, MetricValue, MinimumPlace, PairClearance, ShapeDistance};
+use hardpoint::run::{ClearanceProof, Clearances, MetricValue, MinimumPlace, PairClearance};
 use hardpoint_file::{parse, parse_with};
 use serde_json::Value;
 
@@ -722,21 +722,8 @@ fn rod_in(solid: &str, [p, q]: [[f64; 3]; 2], steps: usize) -> String {
     )
 }
 
-/// Intervals of a curve in which the distance does not change by the integral of its rates, to fifth order: those in
-/// which the features change.
-fn rates_differ(curve: &[ShapeDistance]) -> usize {
-    let size = curve.iter().map(|at| at.distance[0].abs()).fold(0.0, f64::max);
-    let differs = |pair: &&[ShapeDistance]| {
-        let [[d, v, a], [e, w, b]] = [0, 1].map(|k| pair[k].distance);
-        let h = pair[1].time - pair[0].time;
-        let change = 0.5 * h * (v + w) + h * h / 12.0 * (a - b);
-        !((e - d - change).abs() <= 1e-8 * size)
-    };
-    curve.windows(2).filter(differs).count()
-}
-
 #[test]
-fn the_deepest_point_between_two_faces_of_a_solid_moves_with_both() {
+fn the_deepest_point_between_two_faces_of_a_solid_has_a_depth_without_rates() {
     // Rods whose deepest point is between two faces.
     let cases = [
         ("box = [60, 40, 100]", [[-60.0, 10.0, 3.0], [60.0, -30.0, -4.0]]),
@@ -744,17 +731,17 @@ fn the_deepest_point_between_two_faces_of_a_solid_moves_with_both() {
     ];
     for (solid, ends) in cases {
         let mut all: Vec<f64> = Vec::new();
-        for steps in [7, 20, 400] {
+        for steps in [7, 20, 40] {
             let model = model_of(&rod_in(solid, ends, steps));
             let found = Analysis::new(&model).unwrap().clearances(&[]);
             let pair = pair(&model, &found, "c");
-            assert!(pair.curve.iter().all(|at| at.distance.iter().all(|x| x.is_finite())), "{solid}");
+            let tied = pair.curve.iter().filter(|at| at.distance[1].is_nan()).count();
+            assert!(tied > 0 && pair.curve.iter().all(|at| at.distance[0].is_finite()), "{solid}: {tied}");
             assert!(pair.minima.len() < 5, "{solid}, {steps} steps: {} minima", pair.minima.len());
-            let differ = rates_differ(&pair.curve);
-            assert!(steps < 400 || differ < 5, "{solid}: {differ} intervals");
             all.push(1e3 * pair.least().unwrap().at.distance[0]);
         }
-        assert!(all.iter().all(|x| (x - all[0]).abs() < 1e-9), "{solid}: {all:?}");
+        // Without rates a minimum is located to a millionth of the motion.
+        assert!(all.iter().all(|x| (x - all[0]).abs() < 1e-6), "{solid}: {all:?}");
     }
 }
 
@@ -1092,64 +1079,21 @@ P_z = { move = "P", along = "z" }
 "#;
 
 #[test]
-fn a_depth_between_two_faces_has_derivatives_where_neither_face_has_a_rate() {
-    let text = TIED.replace("steps = 10", "steps = 100");
-    let model = model_of(&text);
-    let analysis = Analysis::new(&model).unwrap();
-    let found = analysis.clearances(&[]);
-    let of = pair(&model, &found, "gap");
+fn a_depth_between_two_faces_has_no_derivative_even_where_that_of_one_face_is_zero() {
+    let model = model_of(TIED);
+    let found = Analysis::new(&model).unwrap().clearances(&[]);
+    let pair = pair(&model, &found, "gap");
     // Neither face along which the rod moves has a rate, and the depth changes.
-    let depths: Vec<f64> = of.curve.iter().map(|at| at.distance[0]).collect();
+    let depths: Vec<f64> = pair.curve.iter().map(|at| at.distance[0]).collect();
     let range = depths.iter().fold(0.0, |most: f64, d| most.max((d - depths[0]).abs()));
     assert!(range > 1e-5, "{depths:?}");
-    assert_eq!(rates_differ(&of.curve), 0);
-    let least = of.least().unwrap();
-    let moved = |by: f64| {
-        let found = analysis.clearances(&[by]);
-        pair(&model, &found, "gap").least().unwrap().at.distance[0]
-    };
-    let difference = (moved(1e-5) - moved(-1e-5)) / 2e-5;
-    assert!((least.d[0] - difference).abs() < 1e-7 && difference.abs() > 1e-3, "{least:?} {difference}");
-}
-
-/// A rod beside a box, or within it, at the middle of a turn where it is parallel to a face: depth below the face, and
-/// the rates that the ends of the common stretch have.
-#[test]
-fn a_rod_parallel_to_a_face_has_the_rate_of_the_middle_of_what_they_have_in_common() {
-    let plate = "v 45 HIGH -5\nv 55 HIGH -5\nv 55 HIGH 5\nv 45 HIGH 5\nv 45 LOW -5\nv 55 LOW -5\nv 55 LOW 5\nv 45 LOW 5\n\
-                 f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
-    let folder = tempfile::tempdir().unwrap();
-    for top in [2.0, -8.0] {
-        let [high, low] = [top, top - 30.0].map(|x| x.to_string());
-        let surface = plate.replace("HIGH", &high).replace("LOW", &low);
-        std::fs::write(folder.path().join("cube.obj"), surface).unwrap();
-        let solids = [
-            (format!("box = [10, 30, 10], frame = {{ position = [50, {}, 0] }}", top - 15.0), 50.0),
-            ("mesh = \"cube.obj\"".to_owned(), 50.0),
-            (format!("cylinder = [[48, {top}, 0], [48, {low}, 0]], radius = 6"), 48.0),
-        ];
-        for (solid, middle) in solids {
-            let text = format!(
-                "name = \"c\"\nunits = {{ length = \"mm\", angle = \"deg\" }}\ntime = {{ start = -1, end = 1, steps = 2 }}\n\
-                 bodies.arm = {{}}\njoints.A = {{ type = \"revolute\", bodies = [\"ground\", \"arm\"], at = [0, 0, 0], axis = \"z\" }}\n\
-                 drivers.m = {{ joint = \"A\", law = \"10*t\" }}\n[shapes]\n\
-                 rod = {{ body = \"arm\", capsule = [[0, 0, 0], [80, 0, 0]], radius = 4 }}\n\
-                 solid = {{ body = \"ground\", {solid} }}\n[clearances]\nc = {{ between = [\"rod\", \"solid\"] }}\n"
-            );
-            let path = folder.path().join("c.toml");
-            std::fs::write(&path, text).unwrap();
-            let model = hardpoint_file::read(&path).unwrap_or_else(|e| panic!("{e}")).model;
-            let found = Analysis::new(&model).unwrap().clearances(&[]);
-            let at = pair(&model, &found, "c").curve[1];
-            assert!(at.is_parallel, "{solid}: {at:?}");
-            assert_near(at.distance[0] * 1e3, -top - 4.0, &solid);
-            assert_near(at.distance[1] * 1e3, middle * 10.0_f64.to_radians(), &solid);
-        }
-    }
+    assert!(pair.curve.iter().all(|at| at.distance[1..].iter().all(|x| x.is_nan())), "{:?}", pair.curve);
+    let tied = pair.minima.iter().filter(|m| m.at.distance[1].is_nan());
+    assert!(tied.into_iter().all(|m| m.d[0].is_nan()), "{:?}", pair.minima);
 }
 
 #[test]
-fn a_smooth_minimum_is_exact_in_a_motion_that_leads_through_a_solid() {
+fn a_smooth_minimum_is_exact_in_a_motion_with_moments_without_rates() {
     // Both turns of the arm lead through the block; between them the rod is nearest behind it.
     let text = |end: f64, steps: usize| {
         TIED.replace("type = \"translational\"", "type = \"cylindrical\"")
@@ -1163,7 +1107,7 @@ fn a_smooth_minimum_is_exact_in_a_motion_that_leads_through_a_solid() {
     let model = model_of(&text(1.3, 13));
     let found = Analysis::new(&model).unwrap().clearances(&[]);
     let pair = pair(&model, &found, "gap");
-    assert!(pair.curve.iter().any(|at| at.distance[0] < -3e-3), "{:?}", pair.curve);
+    assert!(pair.curve.iter().any(|at| at.distance[1].is_nan()), "{:?}", pair.curve);
     let smooth =
         pair.minima.iter().filter(|m| m.place == MinimumPlace::Inside && m.at.distance[1].is_finite());
     let mut count = 0;
@@ -1660,52 +1604,4 @@ fn a_least_distance_over_some_output_times_is_one_minimum() {
     let found = Analysis::new(&model).unwrap().clearances(&[]);
     let times: Vec<f64> = pair(&model, &found, "c").minima.iter().map(|m| m.at.time).collect();
     assert_eq!(times.len(), 1, "{times:?}");
-}
-
-#[test]
-fn lengths_of_a_box_are_positive() {
-    for sides in ["[-30, 12, 20]", "[30, 0, 20]", "[30, 12, -1e-9]"] {
-        let error = parse(&TIED.replace("[30, 12, 20]", sides), "box.toml").unwrap_err();
-        assert_eq!(error.list()[0].code, "HP0263", "{sides}: {error}");
-        assert!(error.list()[0].message.ends_with("is not positive"), "{sides}: {error}");
-    }
-}
-
-#[test]
-fn solids_of_any_size_have_their_distances() {
-    // A ball and three solids, all scaled together.
-    let text = |scale: f64| {
-        let list = |p: &[f64]| {
-            format!("[{}]", p.iter().map(|x| (x * scale).to_string()).collect::<Vec<_>>().join(", "))
-        };
-        format!(
-            "name = \"c\"\nunits = {{ length = \"mm\", angle = \"deg\" }}\ntime = {{ end = 1, steps = 4 }}\nbodies.arm = {{}}\n\
-             joints.A = {{ type = \"revolute\", bodies = [\"ground\", \"arm\"], at = [0, 0, 0], axis = [0.2, 0.1, 1] }}\n\
-             drivers.m = {{ joint = \"A\", law = \"90*t\" }}\n[shapes]\n\
-             rod = {{ body = \"arm\", capsule = [[0, 0, 0], {}], radius = {} }}\n\
-             block = {{ body = \"ground\", box = {}, frame = {{ position = {} }} }}\n\
-             wedge = {{ body = \"ground\", hull = [{}, {}, {}, {}] }}\n\
-             [clearances]\nblock = {{ between = [\"rod\", \"block\"] }}\nwedge = {{ between = [\"rod\", \"wedge\"] }}\n",
-            list(&[60.0, 0.0, 0.0]),
-            4.0 * scale,
-            list(&[10.0, 15.0, 20.0]),
-            list(&[30.0, 40.0, 3.0]),
-            list(&[10.0, 50.0, 0.0]),
-            list(&[20.0, 55.0, 4.0]),
-            list(&[12.0, 70.0, 30.0]),
-            list(&[-5.0, 60.0, 8.0]),
-        )
-    };
-    let depths = |scale: f64| {
-        let model = model_of(&text(scale));
-        let found = Analysis::new(&model).unwrap().clearances(&[]);
-        let least = |name: &str| pair(&model, &found, name).least().unwrap().at.distance[0] * 1e3 / scale;
-        [least("block"), least("wedge")]
-    };
-    let [block, wedge] = depths(1.0);
-    assert!(block < -4.0 && wedge < -4.0, "{block} {wedge}");
-    for scale in [1e-6, 1e3] {
-        let [a, b] = depths(scale);
-        assert!((a - block).abs() < 1e-6 && (b - wedge).abs() < 1e-6, "{scale}: {a} {block}, {b} {wedge}");
-    }
 }

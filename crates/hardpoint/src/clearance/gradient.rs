@@ -101,8 +101,7 @@ impl DistanceGradient {
         shapes: [ShapeId; 2],
         near: &Nearest,
     ) -> Option<Self> {
-        let has_no_direction = near.is_tied || near.between.is_some();
-        if !near.distance.is_finite() || has_no_direction || placed.is_without_direction(shapes, near) {
+        if !near.distance.is_finite() || near.is_tied || placed.is_without_direction(shapes, near) {
             return None;
         }
         let features = placed.features(shapes, near);
