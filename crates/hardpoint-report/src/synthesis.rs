@@ -102,11 +102,7 @@ pub fn refusal(file: &TaskFile, error: &TaskError) -> Diagnostics {
             .note("a slider follows it exactly; the nearest four-bars have infinitely long links")
             .help("use a slider, or move a point off the line by the tolerance that the path has"),
         TaskError::Turns(n) => {
-            let points = match &file.aim {
-                TaskAim::Path { points, .. } => points.len(),
-                TaskAim::Poses(poses) => poses.len(),
-            };
-            let message = format!("there are {n} `crank_angles` for {points} points");
+            let message = format!("there are {n} `crank_angles` for {} points", places(&file.aim));
             file.error(COUNT, &message, None, Some("crank_angles")).help("give one angle for each point")
         }
         TaskError::TurnOrder(k) => {
@@ -126,6 +122,14 @@ pub fn refusal(file: &TaskFile, error: &TaskError) -> Diagnostics {
         TaskError::NoType => file.error(COUNT, "no type of linkage is selected", None, Some("linkages")),
     };
     file.diagnostics(vec![diagnostic])
+}
+
+/// Number of the points or poses of a task.
+fn places(aim: &TaskAim) -> usize {
+    match aim {
+        TaskAim::Path { points, .. } => points.len(),
+        TaskAim::Poses(poses) => poses.len(),
+    }
 }
 
 /// A point in the units of a file.

@@ -48,7 +48,8 @@ pub struct PredictionQuality {
     /// Number of output times at which the change is known and a prediction is not, since there are no derivatives.
     pub unpredicted: usize,
     /// Factor by which the change can be scaled before its second-order part reaches 5 % of its first-order part;
-    /// infinite if it is exactly linear, `None` if the first-order part is round-off or the second-order part is unknown.
+    /// infinite if it is exactly linear, `None` if the first-order part is round-off or the second-order part is
+    /// unknown.
     pub linear_up_to: Option<f64>,
 }
 

@@ -43,7 +43,7 @@ export interface PageMemory {
 export interface Tools {
   /** Choices of the page before. */
   memory?: PageMemory
-  /** What the view of the page before was drawn with. */
+  /** Graphics context of the view of the page before. */
   graphics?: Graphics
   /** Element in the bar. */
   bar?: HTMLElement

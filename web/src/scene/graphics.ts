@@ -6,8 +6,8 @@ export interface Disposable {
 }
 
 /**
- * What pictures are drawn with. The views of pages that follow one another share it, so that programs for the graphics
- * card are compiled once: in software they take as long as the rest of a page.
+ * Graphics context of views. Those of pages that follow one another share it, so that programs for the graphics card
+ * are compiled once: in software they take as long as the rest of a page.
  */
 export class Graphics {
   readonly renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true })

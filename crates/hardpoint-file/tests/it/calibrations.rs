@@ -242,7 +242,7 @@ camber = -1
 radius = 300
 measures = ["toe", "half_track"]
 "#;
-/// Its readings with kx = 5000 N/mm, kz = 900 N/mm and kc = 2 N m/deg, with noise of 0.01 deg and 0.05 mm.
+/// Readings of it with kx = 5000 N/mm, kz = 900 N/mm and kc = 2 N m/deg, with noise of 0.01 deg and 0.05 mm.
 const ARM_READINGS: &str = "\
 road [kN],brk [N],W.toe [mrad],W.half_track [mm]
 0,0,-3.48459,745.0403

@@ -168,17 +168,17 @@ fn outputs_that_a_change_does_not_affect_have_todays_numbers() {
 
 #[test]
 fn a_measure_that_a_driver_prescribes_has_no_change() {
-    let file = gallery("macpherson.toml");
+    let file = gallery("wheel_clearance.toml");
     let WhatIfPage { facts, found, .. } = changed(&file, &[("tie_rod_inner_z", 2.0)]);
     let measure = |name: &str| facts.measures.iter().find(|m| m.measure == name).unwrap();
-    let travel = measure("wheel_travel");
+    let travel = measure("front_left.wheel_travel");
     // The re-solved curve differs by round-off.
-    let m = found.today.measured.outputs.iter().position(|o| o.name == "wheel_travel").unwrap();
+    let m = found.today.measured.outputs.iter().position(|o| o.name == "front_left.wheel_travel").unwrap();
     let off = |k: usize| (found.exact(k, m) - found.today.measured.value(k, m)[0]).abs();
     assert!((0..found.len()).map(off).fold(0.0, f64::max) < 1e-12);
     assert_eq!((travel.change, travel.linear_up_to, travel.exactly_linear), (Some(0.0), None, false));
     assert_eq!(travel.errors, Some([Some(0.0); 2]));
-    let toe = measure("toe");
+    let toe = measure("front_left.toe");
     assert!(toe.change.is_some_and(|x| x.abs() > 1e-3) && toe.linear_up_to.is_some_and(|x| x > 1.0));
 }
 

@@ -495,7 +495,8 @@ impl<'b> FitWorkspace<'b> {
         if self.priors.is_empty() { 1.0 } else { dot(v, v).sqrt() }
     }
 
-    /// Component of the residuals along the image of a direction `(v, s)`, with `s = |J v|`: `u . r` with `u = J v / s`.
+    /// Component of the residuals along the image of a direction `(v, s)`, with `s = |J v|`: `u . r` with `u = J v
+    /// / s`.
     fn component(&self, at: &Rows, weights: &[f64], scale: f64, (v, s): &(Vec<f64>, f64)) -> f64 {
         let of_readings = at.d.iter().zip(&at.r).zip(weights).map(|((row, r), w)| w * r * dot(row, v));
         let of_priors = self.priors.a.iter().zip(&at.priors).map(|(a, r)| scale * scale * r * dot(a, v));

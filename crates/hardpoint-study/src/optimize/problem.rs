@@ -514,14 +514,10 @@ impl<'m> Problem<'m> {
             push(value - most, d, true, true);
             return;
         }
-        if self.has_limit_residuals
-            && let Some(entry) = entry
-        {
+        if let Some(entry) = entry.filter(|_| self.has_limit_residuals) {
             let (model, solution) = (self.motions.model(entry.motion), &found.solutions[entry.motion]);
-            if let Some(parts) = misfits(model, solution, &model.metrics[entry.metric]) {
-                let d = parts.d.iter().map(|d| self.searched(d)).collect();
-                point.limit_residuals.push((place, Rows { values: parts.values, d }));
-            }
+            let residuals = misfits(model, solution, &model.metrics[entry.metric]);
+            point.limit_residuals.extend(residuals.map(|parts| (place, self.rows(&parts, 1.0))));
         }
         // The time of a maximum varies with the design, so all candidates are kept within the limit.
         let parts = |extrema: &[f64], sign: f64| {
@@ -550,14 +546,19 @@ impl<'m> Problem<'m> {
         }
         let ends = parts(&[1.0, -1.0], 1.0).zip(parts(&[1.0, -1.0], -1.0));
         if let (Some(most), Some((high, low))) = (settings.most, ends) {
-            let rows = |parts: MetricParts, sign: f64| Rows {
-                values: parts.values.iter().map(|x| sign * x).collect(),
-                d: parts.d.iter().map(|d| self.searched(d).iter().map(|d| sign * d).collect()).collect(),
-            };
-            point.spreads.push(Spread { of: place, most, ends: [rows(high, 1.0), rows(low, -1.0)] });
+            let ends = [self.rows(&high, 1.0), self.rows(&low, -1.0)];
+            point.spreads.push(Spread { of: place, most, ends });
             if let Some(row) = point.limits.iter_mut().rfind(|row| row.of == place && row.upper) {
                 row.spread = true;
             }
+        }
+    }
+
+    /// Parts of a metric with their derivatives by the searched variables, times a sign.
+    fn rows(&self, parts: &MetricParts, sign: f64) -> Rows {
+        Rows {
+            values: parts.values.iter().map(|x| sign * x).collect(),
+            d: parts.d.iter().map(|d| self.searched(d).iter().map(|d| sign * d).collect()).collect(),
         }
     }
 
@@ -577,8 +578,8 @@ impl<'m> Problem<'m> {
         }
     }
 
-    /// Rejects a design that exceeds a limit at a place without derivatives, from which no direction is known. Elsewhere
-    /// such a place keeps the limit, and is constant to first order.
+    /// Rejects a design that exceeds a limit at a place without derivatives, from which no direction is known.
+    /// Elsewhere such a place keeps the limit, and is constant to first order.
     fn check_limit(
         &self,
         place: usize,

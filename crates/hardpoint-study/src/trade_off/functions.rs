@@ -98,101 +98,23 @@ pub(super) struct Scale {
 
 impl State {
     pub fn new(problem: &Problem<'_>, limit_scales: &[f64], x: Vec<f64>, point: Point) -> Self {
-        let n = x.len();
-        let spans = problem.spans();
-        let by_parts = |d: &[f64], factor: f64| -> Vec<f64> {
-            d.iter().zip(&spans).map(|(d, span)| factor * d * span).collect()
-        };
         let count = problem.settings.goals.len();
-        let mut functions = Vec::new();
-        let (mut groups, mut goals) = (Vec::new(), vec![0.0; count]);
-        let mut squares = vec![false; count];
-        for goal in 0..count {
-            let per_unit = 1.0 / problem.settings.goals[goal].weight;
-            let shares = || problem.goals.iter().zip(&point.shares).filter(|(g, _)| g.of == goal);
-            let misfits = shares().flat_map(|(_, s)| s.misfits.clone());
-            let rows: Vec<(f64, Vec<f64>)> = misfits
-                .map(|k| (per_unit * point.misfits.values[k], by_parts(&point.misfits.d[k], per_unit)))
-                .collect();
-            let plain: Vec<usize> = shares().flat_map(|(_, s)| s.plain.clone()).collect();
-            squares[goal] = !rows.is_empty();
-            if let [(r, d)] = &rows[..] {
-                let group = groups.len();
-                let mut push = |value: f64, d: Vec<f64>| {
-                    functions.push(Function::new(Role::Peak(group), count + group, value, d));
-                };
-                let mut of_goal = shares().flat_map(|(_, s)| s.misfits.clone());
-                let is_own = |k: usize| point.extrema.iter().find(|extremum| extremum.misfit == k);
-                match of_goal.next().and_then(is_own) {
-                    Some(Extremum { rows, .. }) => {
-                        let rows = rows.values.iter().zip(&rows.d);
-                        rows.for_each(|(value, d)| push(per_unit * value, by_parts(d, per_unit)));
-                    }
-                    None => {
-                        for sign in [1.0, -1.0] {
-                            push(sign * r, d.iter().map(|d| sign * d).collect());
-                        }
-                    }
-                }
-                // The largest of the pushed numbers, to the last bit.
-                let of_group = functions.iter().filter(|f| f.role == Role::Peak(group));
-                let greatest = of_group.map(|f| f.value).fold(f64::NEG_INFINITY, f64::max);
-                goals[goal] += greatest;
-                groups.push((goal, greatest));
-            } else if !rows.is_empty() {
-                let residuals = Residuals::folded(rows, n);
-                let value = residuals.norm();
-                functions.push(Function::of_norm(Role::Goal(goal), goal, value, residuals));
-                goals[goal] += value;
-            } else if !plain.is_empty() {
-                let value = plain.iter().map(|k| per_unit * point.plain.values[*k]).sum();
-                let mut d = vec![0.0; n];
-                for k in plain {
-                    d.iter_mut().zip(by_parts(&point.plain.d[k], per_unit)).for_each(|(a, b)| *a += b);
-                }
-                functions.push(Function::new(Role::Goal(goal), goal, value, d));
-                goals[goal] += value;
-            }
-            for k in shares().flat_map(|(_, s)| s.peaks.clone()) {
-                let peaks = &point.peaks[k];
-                let group = groups.len();
-                for (value, d) in peaks.values.iter().zip(&peaks.d) {
-                    let (value, d) = (per_unit * value, by_parts(d, per_unit));
-                    functions.push(Function::new(Role::Peak(group), count + group, value, d));
-                }
-                let greatest = per_unit * peaks.greatest();
-                goals[goal] += greatest;
-                groups.push((goal, greatest));
-            }
-        }
-        let limits = count + groups.len();
-        for row in point.limits.iter().filter(|row| !row.spread) {
-            let per_scale = 1.0 / limit_scales[row.of];
-            let role = if row.equal { Role::Equal } else { Role::Limit };
-            let block = limits + 2 * row.of + usize::from(row.upper);
-            let value = per_scale * row.exceeds;
-            let residuals = point.limit_residuals.iter().find(|(of, _)| row.upper && *of == row.of);
-            functions.push(match residuals {
-                Some((_, Rows { values, d })) => {
-                    let rows = values.iter().zip(d).map(|(r, d)| (per_scale * r, by_parts(d, per_scale)));
-                    Function::of_norm(role, block, value, Residuals::folded(rows.collect(), n))
-                }
-                None => Function::new(role, block, value, by_parts(&row.d, per_scale)),
-            });
-        }
+        let mut found = FunctionList {
+            problem,
+            point: &point,
+            spans: problem.spans(),
+            functions: Vec::new(),
+            squares: vec![false; count],
+            groups: Vec::new(),
+            ranges: Vec::new(),
+            goals: vec![0.0; count],
+        };
+        (0..count).for_each(|goal| found.add_goal(goal));
+        let limits = count + found.groups.len();
+        found.add_limits(limits, limit_scales);
         let ends = limits + 2 * problem.limits.len();
-        let mut ranges = Vec::new();
-        for (k, spread) in point.spreads.iter().enumerate() {
-            let per_scale = 1.0 / limit_scales[spread.of];
-            ranges.push(per_scale * spread.most);
-            for (end, rows) in spread.ends.iter().enumerate() {
-                let end = 2 * k + end;
-                for (value, d) in rows.values.iter().zip(&rows.d) {
-                    let (value, d) = (per_scale * value, by_parts(d, per_scale));
-                    functions.push(Function::new(Role::End(end), ends + end, value, d));
-                }
-            }
-        }
+        found.add_ranges(ends, limit_scales);
+        let FunctionList { functions, squares, groups, ranges, goals, .. } = found;
         let blocks = ends + 2 * ranges.len();
         Self {
             x,
@@ -336,6 +258,124 @@ impl State {
         let size = dot(&weights, &scale.steepest).max(f64::MIN_POSITIVE);
         let residual = if sum > 0.0 { left / (sum * size) } else { f64::INFINITY };
         Criticality { residual, weights }
+    }
+}
+
+/// Derivatives by fractions of the bounds, times a factor.
+fn by_parts(d: &[f64], factor: f64, spans: &[f64]) -> Vec<f64> {
+    d.iter().zip(spans).map(|(d, span)| factor * d * span).collect()
+}
+
+/// Functions of a design while they are listed.
+struct FunctionList<'p> {
+    problem: &'p Problem<'p>,
+    point: &'p Point,
+    spans: Vec<f64>,
+    functions: Vec<Function>,
+    squares: Vec<bool>,
+    groups: Vec<(usize, f64)>,
+    ranges: Vec<f64>,
+    goals: Vec<f64>,
+}
+
+impl FunctionList<'_> {
+    /// Lists the functions of a goal.
+    fn add_goal(&mut self, goal: usize) {
+        let Self { problem, point, spans, functions, squares, groups, goals, .. } = self;
+        let (n, count) = (spans.len(), goals.len());
+        let by_parts = |d: &[f64], factor: f64| by_parts(d, factor, spans);
+        let per_unit = 1.0 / problem.settings.goals[goal].weight;
+        let shares = || problem.goals.iter().zip(&point.shares).filter(|(g, _)| g.of == goal);
+        let misfits = shares().flat_map(|(_, s)| s.misfits.clone());
+        let rows: Vec<(f64, Vec<f64>)> = misfits
+            .map(|k| (per_unit * point.misfits.values[k], by_parts(&point.misfits.d[k], per_unit)))
+            .collect();
+        let plain: Vec<usize> = shares().flat_map(|(_, s)| s.plain.clone()).collect();
+        squares[goal] = !rows.is_empty();
+        if let [(r, d)] = &rows[..] {
+            let group = groups.len();
+            let mut push = |value: f64, d: Vec<f64>| {
+                functions.push(Function::new(Role::Peak(group), count + group, value, d));
+            };
+            let mut of_goal = shares().flat_map(|(_, s)| s.misfits.clone());
+            let is_own = |k: usize| point.extrema.iter().find(|extremum| extremum.misfit == k);
+            match of_goal.next().and_then(is_own) {
+                Some(Extremum { rows, .. }) => {
+                    let rows = rows.values.iter().zip(&rows.d);
+                    rows.for_each(|(value, d)| push(per_unit * value, by_parts(d, per_unit)));
+                }
+                None => {
+                    for sign in [1.0, -1.0] {
+                        push(sign * r, d.iter().map(|d| sign * d).collect());
+                    }
+                }
+            }
+            // The largest of the pushed numbers, to the last bit.
+            let of_group = functions.iter().filter(|f| f.role == Role::Peak(group));
+            let greatest = of_group.map(|f| f.value).fold(f64::NEG_INFINITY, f64::max);
+            goals[goal] += greatest;
+            groups.push((goal, greatest));
+        } else if !rows.is_empty() {
+            let residuals = Residuals::folded(rows, n);
+            let value = residuals.norm();
+            functions.push(Function::of_norm(Role::Goal(goal), goal, value, residuals));
+            goals[goal] += value;
+        } else if !plain.is_empty() {
+            let value = plain.iter().map(|k| per_unit * point.plain.values[*k]).sum();
+            let mut d = vec![0.0; n];
+            for k in plain {
+                d.iter_mut().zip(by_parts(&point.plain.d[k], per_unit)).for_each(|(a, b)| *a += b);
+            }
+            functions.push(Function::new(Role::Goal(goal), goal, value, d));
+            goals[goal] += value;
+        }
+        for k in shares().flat_map(|(_, s)| s.peaks.clone()) {
+            let peaks = &point.peaks[k];
+            let group = groups.len();
+            for (value, d) in peaks.values.iter().zip(&peaks.d) {
+                let (value, d) = (per_unit * value, by_parts(d, per_unit));
+                functions.push(Function::new(Role::Peak(group), count + group, value, d));
+            }
+            let greatest = per_unit * peaks.greatest();
+            goals[goal] += greatest;
+            groups.push((goal, greatest));
+        }
+    }
+
+    /// Lists the limits; their blocks begin at this one.
+    fn add_limits(&mut self, limits: usize, limit_scales: &[f64]) {
+        let Self { point, spans, functions, .. } = self;
+        let by_parts = |d: &[f64], factor: f64| by_parts(d, factor, spans);
+        for row in point.limits.iter().filter(|row| !row.spread) {
+            let per_scale = 1.0 / limit_scales[row.of];
+            let role = if row.equal { Role::Equal } else { Role::Limit };
+            let block = limits + 2 * row.of + usize::from(row.upper);
+            let value = per_scale * row.exceeds;
+            let residuals = point.limit_residuals.iter().find(|(of, _)| row.upper && *of == row.of);
+            functions.push(match residuals {
+                Some((_, Rows { values, d })) => {
+                    let rows = values.iter().zip(d).map(|(r, d)| (per_scale * r, by_parts(d, per_scale)));
+                    Function::of_norm(role, block, value, Residuals::folded(rows.collect(), spans.len()))
+                }
+                None => Function::new(role, block, value, by_parts(&row.d, per_scale)),
+            });
+        }
+    }
+
+    /// Lists the ends of curves with a limited range; their blocks begin at this one.
+    fn add_ranges(&mut self, ends: usize, limit_scales: &[f64]) {
+        let Self { point, spans, functions, ranges, .. } = self;
+        for (k, spread) in point.spreads.iter().enumerate() {
+            let per_scale = 1.0 / limit_scales[spread.of];
+            ranges.push(per_scale * spread.most);
+            for (end, rows) in spread.ends.iter().enumerate() {
+                let end = 2 * k + end;
+                for (value, d) in rows.values.iter().zip(&rows.d) {
+                    let (value, d) = (per_scale * value, by_parts(d, per_scale, spans));
+                    functions.push(Function::new(Role::End(end), ends + end, value, d));
+                }
+            }
+        }
     }
 }
 

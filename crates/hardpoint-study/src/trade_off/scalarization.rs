@@ -6,9 +6,9 @@
 //! ```
 //!
 //! Each step leads to the minimum of a model of all functions within a trust region, from the design between two
-//! neighbours on the front. The model ([`LocalModel`]) costs no design: norms are those of linear residuals, and the rest
-//! of each function is a symmetric rank-one secant, which neighbouring points of the front inherit. Its minimum is found
-//! by sequential quadratic programming.
+//! neighbours on the front. The model ([`LocalModel`]) costs no design: norms are those of linear residuals, and
+//! the rest of each function is a symmetric rank-one secant, which neighbouring points of the front inherit. Its
+//! minimum is found by sequential quadratic programming.
 
 use super::functions::{Criticality, Matrix, Role, Scale, State};
 use super::local_model::LocalModel;
@@ -282,7 +282,8 @@ impl Scalarization<'_> {
         (x != base.x).then_some(ModelMinimum { x, value, penalty })
     }
 
-    /// Step of a quadratic program at a design of the model, within a region and a radius. Its multipliers replace the given ones.
+    /// Step of a quadratic program at a design of the model, within a region and a radius. Its multipliers replace
+    /// the given ones.
     fn step(
         &self,
         state: &State,

@@ -127,9 +127,9 @@ fn anchors(
     Ok(anchors)
 }
 
-/// Optimum of a goal alone that the steps of a front lead to from the nominal design, as fractions of the bounds; `None`
-/// if they do not, if the goal vanishes there, or if a variable within its bounds has not moved: the nominal design may
-/// be symmetric in it, and a saddle.
+/// Optimum of a goal alone that the steps of a front lead to from the nominal design, as fractions of the bounds;
+/// `None` if they do not, if the goal vanishes there, or if a variable within its bounds has not moved: the nominal
+/// design may be symmetric in it, and a saddle.
 fn nearest_optimum(
     memory: &Memory<'_>,
     nominal: &State,

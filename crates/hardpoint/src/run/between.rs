@@ -225,7 +225,7 @@ impl Analysis<'_> {
     }
 
     /// Solves the motion of a design at times between those of a solution, from the positions on both sides. `None` if
-    /// these do not determine it, or if so many times are solved faster with all others.
+    /// these do not determine it, or if there are more of them than are solved faster by themselves.
     fn solve_added(
         &self,
         known: &Solution,

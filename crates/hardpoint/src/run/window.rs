@@ -113,22 +113,12 @@ impl Analysis<'_> {
         solution.between = None;
         let variables = if sensitive { model.variables.len() } else { 0 };
         let of_motion = self.openings().is_none();
-        let wanted = vec![true; model.bodies.len()];
         let giving = || Compliances::new(self.design_map(), topology, &design.values, sensitive);
         let mut compliances = (measures && of_motion).then(giving).flatten();
         let loads = measures && (self.asks_for_loads() || compliances.is_some());
         let mut workspaces =
             PerPlan::new(self, design, |plan| Workspaces::of(plan, self, measures, sensitive));
-        let mut walk = match known {
-            Some(known) => Walk::new(self, design, wanted).between(known),
-            None if measures && self.needs_kernel().is_some() => Walk::new(self, design, wanted),
-            None => Walk::by_programs(
-                self,
-                design,
-                wanted,
-                (measures, workspaces.first().slopes.is_some(), loads),
-            ),
-        };
+        let mut walk = self.walk_of(known, design, (measures, workspaces.first().slopes.is_some(), loads));
         if loads {
             walk = walk.with_loads(|plan| load_solver(plan, model, sensitive));
         }
@@ -212,6 +202,24 @@ impl Analysis<'_> {
         window.close(self, design, solution);
         solution.stop = stop;
         window.first
+    }
+}
+
+impl Analysis<'_> {
+    /// The walk of a design with all bodies, and with margins, derivatives of measures and loads if requested:
+    /// between the times of a known motion, step by step where measures need the kernel, or else by programs.
+    fn walk_of<'w>(
+        &'w self,
+        known: Option<&'w Motion>,
+        design: &'w PreparedDesign,
+        asked: (bool, bool, bool),
+    ) -> Walk<'w> {
+        let wanted = vec![true; self.model().bodies.len()];
+        match known {
+            Some(known) => Walk::new(self, design, wanted).between(known),
+            None if asked.0 && self.needs_kernel().is_some() => Walk::new(self, design, wanted),
+            None => Walk::by_programs(self, design, wanted, asked),
+        }
     }
 }
 
