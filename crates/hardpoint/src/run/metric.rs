@@ -128,8 +128,8 @@ fn metric_value(model: &Model, solution: &Solution, metric: &Metric) -> MetricVa
     // Next to a kink that is not located, polynomials of several intervals are off by far more than the curve changes.
     let is_extremum = !metric.take.extrema().is_empty();
     let error = error.map(|error| if is_extremum { error.min(range) } else { error });
-    // A range or a magnitude of no more than its error: round-off decides where the extremum is.
-    let is_round_off = metric.take.extrema().len() > 1 && error.is_some_and(|error| error >= value.abs());
+    // Where a curve changes by no more than the error of its range, round-off decides where its ends are.
+    let is_round_off = metric.take.extrema().len() > 1 && error.is_some_and(|error| error >= range);
     MetricValue {
         value: Some(value),
         time,
