@@ -118,7 +118,8 @@ pub enum Command {
     Schema,
     /// Print completions for a shell
     #[command(
-        after_help = "Example:\n  hardpoint completions bash > ~/.local/share/bash-completion/completions/hardpoint"
+        after_help = "Example:\n  hardpoint completions bash \\
+      > ~/.local/share/bash-completion/completions/hardpoint"
     )]
     Completions {
         /// The shell
@@ -145,7 +146,8 @@ write, completes keys, names and words, shows the meaning of keys and the values
 entries, finds references, and renames entries at all their places.
 
 Example, for Neovim 0.11 or later:
-  vim.lsp.config('hardpoint', { cmd = { 'hardpoint', 'lsp' }, filetypes = { 'toml' } })
+  vim.lsp.config('hardpoint',
+      { cmd = { 'hardpoint', 'lsp' }, filetypes = { 'toml' } })
   vim.lsp.enable('hardpoint')";
 
 /// `hardpoint lsp`.

@@ -20,6 +20,9 @@ const LEFT_OUT: [&str; 8] = [
 /// Options whose file is written.
 const WRITES: [&str; 3] = ["-o", "--output", "--save"];
 
+/// Columns of the narrowest terminal in which examples are whole.
+const TERMINAL: usize = 80;
+
 fn copy(from: &Path, to: &Path) {
     std::fs::create_dir_all(to).unwrap();
     for entry in std::fs::read_dir(from).unwrap() {
@@ -54,16 +57,17 @@ fn examples(bench: &Bench, command: &str) -> Vec<String> {
     let Some((_, all)) = help.split_once("\nExample") else { panic!("`{command} --help` has no examples") };
     let mut found: Vec<String> = Vec::new();
     for line in all.lines().skip(1).take_while(|line| !line.is_empty()) {
-        match line.trim_start().strip_prefix("hardpoint ") {
-            Some(example) => found.push(example.into()),
-            None if line.trim_start().starts_with("echo ") => {}
-            // A copied example is whole only where a line that is continued says so to the shell.
-            None => {
-                let last = found.last_mut().and_then(|last| last.strip_suffix(" \\").map(str::to_owned));
-                let Some(first) = last else { panic!("`{command} --help`: a broken example before {line}") };
+        // A longer one is broken where a terminal ends, and no longer whole when it is copied.
+        assert!(line.len() < TERMINAL, "`{command} --help`: {line}");
+        let continued = found.last().and_then(|last| last.strip_suffix(" \\").map(str::to_owned));
+        match (continued, line.trim_start().strip_prefix("hardpoint ")) {
+            (Some(first), _) => {
                 found.pop();
                 found.push(format!("{first} {}", line.trim_start()));
             }
+            (None, Some(example)) => found.push(example.into()),
+            // Of another program.
+            (None, None) => {}
         }
     }
     let alone = |line: &String| {
