@@ -117,10 +117,8 @@ pub enum Command {
     #[command(after_help = "Example:\n  hardpoint schema > hardpoint.schema.json")]
     Schema,
     /// Print completions for a shell
-    #[command(
-        after_help = "Example:\n  hardpoint completions bash \\
-      > ~/.local/share/bash-completion/completions/hardpoint"
-    )]
+    #[command(after_help = "Example:\n  hardpoint completions bash \\
+      > ~/.local/share/bash-completion/completions/hardpoint")]
     Completions {
         /// The shell
         shell: Shell,
