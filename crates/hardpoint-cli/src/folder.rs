@@ -87,9 +87,8 @@ impl Folder {
         for path in family.iter().map(|name| self.path.join(name)) {
             // The last file indicates that the results are complete; it is absent while the others are replaced.
             let stays = self.pending.iter().any(|(_, p)| *p == path) && Some(&path) != last.as_ref();
-            let removed = if stays { Ok(()) } else { std::fs::remove_file(&path) };
-            if let Err(error) = removed.or_else(|e| if is_absent(&e) { Ok(()) } else { Err(e) }) {
-                return Err(WriteError { path, error });
+            if !stays {
+                remove(path)?;
             }
         }
         for (file, path) in std::mem::take(&mut self.pending) {
@@ -102,12 +101,7 @@ impl Folder {
 
     /// Removes the files of a family from a folder of an earlier run, and the folder unless it holds anything else.
     pub fn clear(path: &Path, family: &[&str]) -> Result<(), WriteError> {
-        let absent_is_fine = |e| if is_absent(&e) { Ok(()) } else { Err(e) };
-        for path in family.iter().map(|name| path.join(name)) {
-            std::fs::remove_file(&path)
-                .or_else(absent_is_fine)
-                .map_err(|error| WriteError { path: path.clone(), error })?;
-        }
+        family.iter().map(|name| path.join(name)).try_for_each(remove)?;
         // Whatever is left in it is not of this program.
         let _ = std::fs::remove_dir(path);
         Ok(())
@@ -193,6 +187,14 @@ impl io::Seek for PendingFile {
 impl Drop for Folder {
     fn drop(&mut self) {
         under_way(Vec::clear);
+    }
+}
+
+/// Removes a file, if it is there.
+fn remove(path: PathBuf) -> Result<(), WriteError> {
+    match std::fs::remove_file(&path) {
+        Err(error) if !is_absent(&error) => Err(WriteError { path, error }),
+        Ok(()) | Err(_) => Ok(()),
     }
 }
 

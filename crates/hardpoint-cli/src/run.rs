@@ -688,7 +688,7 @@ impl Results<'_> {
         let _working = session.working("writing");
         let Page { html, .. } = self.page(summary);
         folder.write("report.html", |out| out.write_all(html.as_bytes()))?;
-        add_files(summary, folder, &[REPORT, "summary.json"]);
+        add_files(summary, folder, &[REPORT, SUMMARY]);
         summary.timings.write = started.elapsed().as_secs_f64();
         summary.timings.total = session.seconds();
         let json = json_text(summary);

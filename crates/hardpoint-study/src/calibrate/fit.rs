@@ -505,7 +505,13 @@ impl<'b> FitWorkspace<'b> {
 
     /// Determined directions over the free parameters that the fit follows, and those that it does not: the design
     /// remains nominal along a direction that is not determined, unless the readings contradict it there.
-    fn followed(&self, at: &Rows, weights: &[f64], scale: f64, free: &[usize]) -> [Vec<(Vec<f64>, f64)>; 2] {
+    fn partitioned(
+        &self,
+        at: &Rows,
+        weights: &[f64],
+        scale: f64,
+        free: &[usize],
+    ) -> [Vec<(Vec<f64>, f64)>; 2] {
         let is_followed = |direction: &(Vec<f64>, f64)| {
             self.vague_sigma(direction, scale).is_none()
                 || dot(&direction.0, &at.x).abs() > VAGUE * self.length(&direction.0)
@@ -514,6 +520,12 @@ impl<'b> FitWorkspace<'b> {
         let (followed, others) =
             self.determined(at, weights, scale, free).directions.into_iter().partition(is_followed);
         [followed, others]
+    }
+
+    /// Determined directions over the free parameters that the fit follows.
+    fn followed(&self, at: &Rows, weights: &[f64], scale: f64, free: &[usize]) -> Vec<(Vec<f64>, f64)> {
+        let [followed, _] = self.partitioned(at, weights, scale, free);
+        followed
     }
 
     /// Number of parameters that the readings determine, as the trace of their part of the information:
@@ -529,7 +541,7 @@ impl<'b> FitWorkspace<'b> {
     /// Undamped step of all parameters at a point.
     fn undamped_step(&self, at: &Rows, weights: &[f64], scale: f64) -> UndampedStep {
         let all: Vec<usize> = (0..self.parameters.len()).collect();
-        let [directions, _] = self.followed(at, weights, scale, &all);
+        let directions = self.followed(at, weights, scale, &all);
         let components: Vec<f64> =
             directions.iter().map(|of| self.component(at, weights, scale, of)).collect();
         let by = dot(&components, &components);
@@ -656,10 +668,7 @@ impl<'b> FitWorkspace<'b> {
     /// one and designs on the way there were not reached or have no derivatives.
     fn status_at_rest(&self, x: &[f64], at: &Rows, weights: &[f64], scale: f64) -> Status {
         let (rows, right) = self.linearised(at, weights, scale);
-        let undamped = |free: &[usize]| {
-            let [followed, _] = self.followed(at, weights, scale, free);
-            followed
-        };
+        let undamped = |free: &[usize]| self.followed(at, weights, scale, free);
         let best = bounded_least_squares(x, &rows, &right, &self.bounds, &undamped);
         let by: Vec<f64> = best.iter().zip(x).map(|(best, x)| best - x).collect();
         let after: f64 = rows.iter().zip(&right).map(|(row, r)| (dot(row, &by) + r).powi(2)).sum();
@@ -699,10 +708,7 @@ impl<'b> FitWorkspace<'b> {
         let (mut rows, mut right) = self.linearised(at, weights, scale);
         let columns: Vec<f64> =
             (0..n).map(|k| rows.iter().map(|row| row[k] * row[k]).sum::<f64>().sqrt()).collect();
-        let undamped = |free: &[usize]| {
-            let [followed, _] = self.followed(at, weights, scale, free);
-            followed
-        };
+        let undamped = |free: &[usize]| self.followed(at, weights, scale, free);
         let first = bounded_least_squares(x, &rows, &right, &self.bounds, &undamped);
         let better = |x: Vec<f64>| {
             let rows = self.rows_at(&x, more)?;
@@ -725,8 +731,8 @@ impl<'b> FitWorkspace<'b> {
             }
             let damped = |free: &[usize]| {
                 let part = |row: &Vec<f64>| free.iter().map(|k| row[*k]).collect::<Vec<f64>>();
-                // Without the components along directions that the fit does not follow
-                let [_, others] = self.followed(at, weights, scale, free);
+                // Without the components along directions that the fit does not follow.
+                let [_, others] = self.partitioned(at, weights, scale, free);
                 let others: Vec<Vec<f64>> = others.iter().map(|(v, _)| part(v)).collect();
                 let span = &singular(&others, free.len()).directions[..others.len()];
                 let without = |row: &Vec<f64>| {

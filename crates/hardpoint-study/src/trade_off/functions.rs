@@ -109,7 +109,10 @@ impl State {
             ranges: Vec::new(),
             goals: vec![0.0; count],
         };
-        (0..count).for_each(|goal| found.add_goal(goal));
+        for goal in 0..count {
+            found.add_goal(goal);
+            found.add_peaks(goal);
+        }
         let limits = count + found.groups.len();
         found.add_limits(limits, limit_scales);
         let ends = limits + 2 * problem.limits.len();
@@ -279,7 +282,7 @@ struct FunctionList<'p> {
 }
 
 impl FunctionList<'_> {
-    /// Lists the functions of a goal.
+    /// Lists the functions of a goal, without its peaks.
     fn add_goal(&mut self, goal: usize) {
         let Self { problem, point, spans, functions, squares, groups, goals, .. } = self;
         let (n, count) = (spans.len(), goals.len());
@@ -329,11 +332,19 @@ impl FunctionList<'_> {
             functions.push(Function::new(Role::Goal(goal), goal, value, d));
             goals[goal] += value;
         }
-        for k in shares().flat_map(|(_, s)| s.peaks.clone()) {
+    }
+
+    /// Lists the peaks of a goal.
+    fn add_peaks(&mut self, goal: usize) {
+        let Self { problem, point, spans, functions, groups, goals, .. } = self;
+        let count = goals.len();
+        let per_unit = 1.0 / problem.settings.goals[goal].weight;
+        let shares = problem.goals.iter().zip(&point.shares).filter(|(g, _)| g.of == goal);
+        for k in shares.flat_map(|(_, s)| s.peaks.clone()) {
             let peaks = &point.peaks[k];
             let group = groups.len();
             for (value, d) in peaks.values.iter().zip(&peaks.d) {
-                let (value, d) = (per_unit * value, by_parts(d, per_unit));
+                let (value, d) = (per_unit * value, by_parts(d, per_unit, spans));
                 functions.push(Function::new(Role::Peak(group), count + group, value, d));
             }
             let greatest = per_unit * peaks.greatest();

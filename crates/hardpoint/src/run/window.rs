@@ -126,9 +126,7 @@ impl Analysis<'_> {
         let slopes = StepValues::new(model, variables, rows);
         let mut window = Window::begin(self, walk.solver.as_ref(), rows, slopes, solution);
         if rows == model.times.len() && self.records_channels(design) {
-            let mut channels = Blocks::default();
-            channels.shape(walk.one.channels().count(), rows);
-            window.motion.channels = Some(channels);
+            window.motion.channels.insert(Blocks::default()).shape(walk.one.channels().count(), rows);
         }
         let stop = walk.all(&mut window, progress, |window, solved, count, solver| {
             let times = &model.times[window.done..window.done + count];
@@ -189,10 +187,8 @@ impl Analysis<'_> {
                 window.open(self, rows, solution);
             }
         });
-        if walk.one.mechanism.selections > 0 {
-            // Other rows may be selected on both sides of a position.
-            window.motion.channels = None;
-        }
+        // Other rows may have been selected on both sides of a position.
+        window.motion.channels.take_if(|_| walk.one.mechanism.selections > 0);
         window.motion.effort = walk.one.effort;
         window.motion.solved_by = Some(self.solved_by(measures));
         window.motion.assembly = walk.one.assembly.take();
@@ -203,9 +199,7 @@ impl Analysis<'_> {
         solution.stop = stop;
         window.first
     }
-}
 
-impl Analysis<'_> {
     /// The walk of a design with all bodies, and with margins, derivatives of measures and loads if requested:
     /// between the times of a known motion, step by step where measures need the kernel, or else by programs.
     fn walk_of<'w>(

@@ -49,9 +49,9 @@ pub(super) fn choose_tree(model: &Model, formulation: Formulation, preferred: &[
 fn roles_outside_tree(model: &Model, formulation: Formulation) -> Vec<JointRole> {
     let reason = |j: &Joint| match (formulation, j.kind.freedoms, j.cut) {
         (Formulation::Absolute, ..) => CutReason::Absolute,
-        (_, None, _) => CutReason::AlwaysCut,
-        (_, _, true) => CutReason::Requested,
-        _ => CutReason::ClosesLoop,
+        (Formulation::Relative, None, _) => CutReason::AlwaysCut,
+        (Formulation::Relative, Some(_), true) => CutReason::Requested,
+        (Formulation::Relative, Some(_), false) => CutReason::ClosesLoop,
     };
     model.joints.iter().map(|j| JointRole::Cut(reason(j))).collect()
 }

@@ -26,7 +26,7 @@ const CEILINGS: &[(&str, [usize; 5])] = &[
     ("hardpoint-file", [11, 0, 0, 0, 0]),
     ("hardpoint-import", [34, 0, 10, 0, 0]),
     ("hardpoint-report", [10, 0, 5, 0, 3]),
-    ("hardpoint-study", [14, 0, 2, 0, 0]),
+    ("hardpoint-study", [13, 0, 2, 0, 0]),
     ("hardpoint-tape", [4, 0, 0, 0, 0]),
     ("joint", [1, 0, 0, 0, 0]),
     ("law", [1, 0, 0, 0, 0]),
@@ -36,7 +36,7 @@ const CEILINGS: &[(&str, [usize; 5])] = &[
     ("motion", [7, 0, 0, 0, 0]),
     ("number", [0, 0, 2, 0, 0]),
     ("python", [1, 0, 2, 0, 0]),
-    ("run", [9, 1, 2, 0, 2]),
+    ("run", [9, 0, 2, 0, 2]),
     ("sensitivity", [1, 0, 0, 0, 0]),
     ("topology", [2, 0, 0, 0, 0]),
 ];
