@@ -4,9 +4,9 @@ use std::{env, error::Error, fs, io::Write, path::Path};
 
 use flate2::{Compression, write::DeflateEncoder};
 
-#[path = "src/base85.rs"]
+#[path = "src/base91.rs"]
 #[allow(dead_code, reason = "pages are only written here")]
-mod base85;
+mod base91;
 
 const PAGE: &str = "page";
 /// Parts of the code, with a zero between them.
@@ -15,7 +15,7 @@ const CODE: [&str; 2] = ["app.css", "app.js"];
 const ENGINE: &str = "engine.deflate";
 
 fn main() -> Result<(), Box<dyn Error>> {
-    println!("cargo::rerun-if-changed=src/base85.rs");
+    println!("cargo::rerun-if-changed=src/base91.rs");
     let mut deflated = DeflateEncoder::new(Vec::new(), Compression::best());
     for (k, part) in CODE.iter().enumerate() {
         if k > 0 {
@@ -34,5 +34,5 @@ fn read(name: &str) -> Result<Vec<u8>, Box<dyn Error>> {
 }
 
 fn write(name: &str, deflated: &[u8]) -> Result<(), Box<dyn Error>> {
-    Ok(fs::write(Path::new(&env::var("OUT_DIR")?).join(name), base85::encode(deflated))?)
+    Ok(fs::write(Path::new(&env::var("OUT_DIR")?).join(name), base91::encode(deflated))?)
 }

@@ -25,7 +25,9 @@ class Page(str):
     """A page as HTML, displayed in a frame."""
 
     def _repr_html_(self) -> str:
-        return f'<iframe srcdoc="{escape(self)}" style="width:100%;height:640px;border:1px solid #ccc"></iframe>'
+        # The engine's text has many characters that other places would escape.
+        source = self.replace("&", "&amp;").replace('"', "&quot;")
+        return f'<iframe srcdoc="{source}" style="width:100%;height:640px;border:1px solid #ccc"></iframe>'
 
     def __repr__(self) -> str:
         return f"<hardpoint.Page, {len(self) / 1e6:.1f} MB of HTML; save it with .save(path)>"

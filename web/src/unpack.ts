@@ -6,7 +6,7 @@ export type Decode = (curve: wire.Curve) => Curve
 
 /** Contents of the report's file: packed by `encoding.rs` of `hardpoint-report`, tracks by `hardpoint-table`. */
 export async function unpack(text: string): Promise<{ payload: wire.Payload; decode: Decode }> {
-  const block = await inflatedOf85(text.trim())
+  const block = await inflatedOf91(text.trim())
   const [json, tracks, gaps, residuals] = new Uint32Array(block.buffer, 0, COUNTS)
   const start = COUNTS * 4 + json
   const payload: wire.Payload = JSON.parse(new TextDecoder().decode(block.subarray(COUNTS * 4, start)))
@@ -17,8 +17,8 @@ export async function unpack(text: string): Promise<{ payload: wire.Payload; dec
 /** The bytes that were deflated and written in base64. */
 export const inflated = (base64: string): Promise<Uint8Array<ArrayBuffer>> => inflate(bytesOf(base64))
 
-/** The bytes that were deflated and written in base 85, as `base85.rs` of `hardpoint-report` does. */
-export const inflatedOf85 = (text: string): Promise<Uint8Array<ArrayBuffer>> => inflate(bytesOf85(text))
+/** The bytes that were deflated and written in base 91, as `base91.rs` of `hardpoint-report` does. */
+export const inflatedOf91 = (text: string): Promise<Uint8Array<ArrayBuffer>> => inflate(bytesOf91(text))
 
 /** A text, deflated and written in base64. */
 export async function deflated(text: string): Promise<string> {
@@ -45,21 +45,21 @@ function bytesOf(base64: string): Uint8Array<ArrayBuffer> {
   return bytes
 }
 
-const DIGITS = '0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ.-:+=^!/*?,;_()[]{}@%$#'
+const DIGITS = "0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ!#$%&'()*+,-./:;=>?@[]^_`{|}~"
 
-/** Four bytes of each five characters; the last ones count as if the largest digit followed them. */
-function bytesOf85(text: string): Uint8Array<ArrayBuffer> {
+/** 13 bits of each two characters, the lowest first; a last single character has six. */
+function bytesOf91(text: string): Uint8Array<ArrayBuffer> {
   const value = new Uint8Array(128)
   for (let k = 0; k < DIGITS.length; k++) value[DIGITS.charCodeAt(k)] = k
-  const groups = Math.ceil(text.length / 5)
-  const view = new DataView(new ArrayBuffer(groups * 4))
-  for (let group = 0; group < groups; group++) {
-    let number = 0
-    for (let k = group * 5; k < group * 5 + 5; k++)
-      number = number * 85 + (k < text.length ? value[text.charCodeAt(k)] : 84)
-    view.setUint32(group * 4, number)
+  const [pairs, single] = [text.length >> 1, text.length % 2]
+  const bytes = new Uint8Array((pairs * 13 + single * 6) >> 3)
+  let [number, bits] = [0, 0]
+  for (let k = 0, at = 0; k < text.length; k += 2) {
+    const pair = k + 1 < text.length
+    number |= (value[text.charCodeAt(k)] + (pair ? 91 * value[text.charCodeAt(k + 1)] : 0)) << bits
+    for (bits += pair ? 13 : 6; bits >= 8; bits -= 8, number >>>= 8) bytes[at++] = number
   }
-  return new Uint8Array(view.buffer, 0, Math.floor((text.length * 4) / 5))
+  return bytes
 }
 
 /** First values of all tracks, then the second ones, and so on. */

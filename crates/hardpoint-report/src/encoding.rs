@@ -1,4 +1,4 @@
-//! Encoding of a page's data: JSON and all curves as one deflated block in base 85.
+//! Encoding of a page's data: JSON and all curves as one deflated block in base 91.
 //!
 //! The curves are packed as [`tracks`](hardpoint_table::tracks): those that the page computes with at full precision,
 //! those that it only draws and ranks within a small error.
@@ -9,7 +9,7 @@ use flate2::{Compression, write::DeflateEncoder};
 use hardpoint_table::tracks::{Precision, Tracks};
 use serde::Serialize;
 
-use crate::base85;
+use crate::base91;
 use crate::page::{Curve, Design, PairTrack, Payload, ShapeMark};
 
 /// Packs the payload: encodes and deflates it.
@@ -22,7 +22,7 @@ pub(crate) fn packed(payload: &Payload) -> Result<Vec<u8>, serde_json::Error> {
 
 /// Number of bytes of the page a packed payload takes.
 pub(crate) fn size_in_page(packed: &[u8]) -> usize {
-    base85::length(packed.len())
+    base91::length(packed.len())
 }
 
 /// A page is 0.6 % larger than at the default level 6, and is packed in less than half the time.
@@ -203,10 +203,10 @@ mod tests {
         let expected = block(&sample()).unwrap();
         let written = fs::read_to_string(&path).unwrap_or_default();
         let mut found = Vec::new();
-        let bytes = base85::decode(written.trim()).unwrap_or_default();
+        let bytes = base91::decode(written.trim()).unwrap_or_default();
         let read = DeflateDecoder::new(&bytes[..]).read_to_end(&mut found);
         if read.is_err() || found != expected {
-            fs::write(&path, base85::encode(&deflated(&expected)) + "\n").unwrap();
+            fs::write(&path, base91::encode(&deflated(&expected)) + "\n").unwrap();
             panic!("web/test/packed.txt was out of date and has been rewritten: commit it");
         }
     }

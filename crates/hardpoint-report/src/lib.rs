@@ -19,7 +19,7 @@
 //! | [`sweep`], [`cells`] | result of a sweep: `summary.json`, and the columns of `designs` and `curves` |
 //! | [`synthesis`] | answers of a synthesis: their models, `answers.csv`, `summary.json` |
 //! | [`maps`] | `maps.csv`, `map_sensitivity.csv`, `maps.json`: measures over grids of two drivers |
-//! | [`payload`], [`page`], [`encoding`], [`base85`] | `report.html` |
+//! | [`payload`], [`page`], [`encoding`], [`base91`] | `report.html` |
 //! | [`sketch`] | line drawing of a mechanism, as SVG or for other papers |
 //! | [`gallery`] | pages of all models, and of a model that cannot be shown |
 //! | [`diagnose`] | diagnostics of runs that cannot start or ended early |
@@ -28,7 +28,7 @@
 //! | [`columns`], [`results`], [`npy`], [`figures`] | tables of numbers, from `hardpoint-table` |
 
 pub mod assembly;
-pub mod base85;
+pub mod base91;
 pub mod calibrate;
 pub mod cells;
 pub mod clearance;

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize, Serializer, ser::Error as _};
 
-use crate::base85;
+use crate::base91;
 use crate::encoding::packed;
 
 #[cfg(test)]
@@ -968,7 +968,7 @@ pub fn sharing(page: &str, models: &str) -> String {
 pub(crate) fn file(title: &str, packed: &[u8]) -> String {
     fill(include_str!("../page/report.html"), |slot| match slot {
         "title" => escape_text(title),
-        "payload" => base85::encode(packed),
+        "payload" => base91::encode(packed),
         "engine" => ENGINE.to_owned(),
         "code" => CODE.to_owned(),
         _ => panic!("the report template names an unknown slot `{slot}`"),

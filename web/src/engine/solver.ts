@@ -1,4 +1,4 @@
-import { inflatedOf85 } from '../unpack'
+import { inflatedOf91 } from '../unpack'
 import { type Answer, answer } from './answer'
 import type { Request, ProgressReply } from './protocol'
 import type { WorkerRequest, WorkerReply } from './worker'
@@ -61,5 +61,5 @@ export class Solver {
 export async function binary(): Promise<WebAssembly.Module | undefined> {
   const text = document.getElementById('engine')?.textContent?.trim()
   if (!text || typeof WebAssembly === 'undefined') return undefined
-  return WebAssembly.compile(await inflatedOf85(text)).catch(() => undefined)
+  return WebAssembly.compile(await inflatedOf91(text)).catch(() => undefined)
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use flate2::read::DeflateDecoder;
-use hardpoint_report::base85;
+use hardpoint_report::base91;
 use tempfile::TempDir;
 
 /// A folder with a model.
@@ -49,7 +49,7 @@ impl Bench {
         let (_, data) = html.split_once("id=\"payload\">").unwrap();
         let (data, _) = data.split_once("</script>").unwrap();
         let mut block = Vec::new();
-        DeflateDecoder::new(&*base85::decode(data.trim()).unwrap()).read_to_end(&mut block).unwrap();
+        DeflateDecoder::new(&*base91::decode(data.trim()).unwrap()).read_to_end(&mut block).unwrap();
         // The block begins with four numbers; the first one is the length of the JSON after them.
         let length = u32::from_le_bytes(block[..4].try_into().unwrap()) as usize;
         serde_json::from_slice(&block[16..16 + length]).unwrap()
