@@ -2,7 +2,8 @@
 
 /// Digits that end neither a script of HTML nor a string in quotation marks, as `page/report.html` and
 /// `web/src/unpack.ts` know them.
-const DIGITS: &[u8; 91] = b"0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ!#$%&'()*+,-./:;=>?@[]^_`{|}~";
+const DIGITS: &[u8; 91] =
+    b"0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ!#$%&'()*+,-./:;=>?@[]^_`{|}~";
 /// Bits of two digits.
 const PAIR: usize = 13;
 /// Bits of a last single digit.

@@ -6,7 +6,8 @@
 //! different operands share one program; its inputs are the numbers they read, and its uniforms are the constants that
 //! differ.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
+use std::mem;
 use std::ops::Range;
 
 use bytemuck::{Pod, Zeroable};
@@ -23,8 +24,23 @@ pub struct Pieces {
     pub shapes: Vec<Shape>,
     /// Pieces, in the order of execution.
     pub pieces: Vec<Piece>,
-    /// Number of values that are stored during a run.
+    /// Links of all pieces, one after the other: a run reads them in this order.
+    links: Links,
+    /// Number of stored values: those that no later piece reads are replaced.
     pub kept: usize,
+}
+
+/// Numbers that a piece reads and writes, apart from outputs that its program writes directly.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Links {
+    /// Inputs: inputs of the whole program, or stored values, by index.
+    inputs: Vec<Operand>,
+    /// First uniforms: uniforms of the whole program.
+    given: Vec<u32>,
+    /// Further uniforms.
+    uniforms: Vec<f64>,
+    /// Outputs among the last stored values: area, and index in it.
+    outputs: Vec<(u32, u32)>,
 }
 
 /// Shared program of several pieces.
@@ -41,16 +57,11 @@ pub struct Shape {
 pub struct Piece {
     /// Index of its shape.
     pub shape: usize,
-    /// Inputs: inputs of the whole program, or stored values, by index.
-    pub inputs: Vec<Operand>,
-    /// First uniforms: uniforms of the whole program.
-    pub given: Vec<u32>,
-    /// Further uniforms.
-    pub uniforms: Vec<f64>,
-    /// Range of its stored values.
-    pub kept: Range<usize>,
-    /// Outputs among the last of these: area, and index in it.
-    pub outputs: Vec<(usize, u32)>,
+    /// Numbers of its inputs, of uniforms of the whole program, of further uniforms, and of outputs among its stored
+    /// values.
+    counts: [usize; 4],
+    /// Range of its stored values; the outputs are the last ones.
+    kept: Range<usize>,
     /// Outputs of the second and the third area that its program writes directly.
     pub areas: [Range<usize>; AREAS - 1],
 }
@@ -60,25 +71,38 @@ impl Program {
     /// areas. Consecutive outputs of a piece in the second and the third area are written there directly.
     pub fn in_pieces(&self, piece_of: impl Fn(Operand) -> usize, ends: [usize; AREAS - 1]) -> Pieces {
         let cut = Assignment::of(self, piece_of, ends);
-        let mut whole = Pieces { shapes: Vec::new(), pieces: Vec::new(), kept: 0 };
+        let (mut pieces, mut links) = (Vec::new(), Vec::new());
         // Constants of every piece, by their index in its shape.
         let (mut shape_of, mut constants) = (HashMap::new(), Vec::new());
         let mut kept_at = vec![u32::MAX; self.instructions.len()];
-        for members in cut.pieces.iter().filter(|members| !members.is_empty()) {
-            let (piece, form, own) = members.canonical(self, &cut, whole.kept, &mut kept_at);
-            whole.kept = piece.kept.end;
+        let mut memory = Memory::default();
+        for (k, members) in cut.pieces.iter().enumerate().filter(|(_, members)| !members.is_empty()) {
+            let (piece, own_links, form, own) = members.canonical(
+                self,
+                &cut,
+                |size| memory.place(k, cut.last_readers[k], size),
+                &mut kept_at,
+            );
             let shapes = shape_of.len();
             let shape = *shape_of.entry(form).or_insert(shapes);
-            whole.pieces.push(Piece { shape, ..piece });
+            pieces.push(Piece { shape, ..piece });
+            links.push(own_links);
             constants.push(own);
         }
-        whole.shapes = vec![Shape { program: Program::default(), ends: [0; AREAS - 1] }; shape_of.len()];
+        let mut shapes = vec![Shape { program: Program::default(), ends: [0; AREAS - 1] }; shape_of.len()];
         for (form, shape) in shape_of {
-            let same: Vec<usize> =
-                (0..whole.pieces.len()).filter(|k| whole.pieces[*k].shape == shape).collect();
-            whole.shapes[shape] = form.shape(&same, &constants, &mut whole.pieces);
+            let same: Vec<usize> = (0..pieces.len()).filter(|k| pieces[*k].shape == shape).collect();
+            shapes[shape] = form.shape(&same, &constants, &mut links);
         }
-        whole
+        let mut all = Links::default();
+        for (piece, own) in pieces.iter_mut().zip(links) {
+            piece.counts = [own.inputs.len(), own.given.len(), own.uniforms.len(), own.outputs.len()];
+            all.inputs.extend(own.inputs);
+            all.given.extend(own.given);
+            all.uniforms.extend(own.uniforms);
+            all.outputs.extend(own.outputs);
+        }
+        Pieces { shapes, pieces, links: all, kept: memory.size }
     }
 }
 
@@ -105,13 +129,19 @@ impl Pieces {
     ) {
         room.kept.resize(self.kept, Line::default());
         if room.uniforms.is_empty() {
-            let of = |piece: &Piece| [vec![0.0; piece.given.len()], piece.uniforms.clone()].concat();
-            room.uniforms = self.pieces.iter().flat_map(of).collect();
+            let mut constants = self.links.uniforms.iter();
+            for Piece { counts: [_, given, uniforms, _], .. } in &self.pieces {
+                room.uniforms.resize(room.uniforms.len() + given, 0.0);
+                room.uniforms.extend(constants.by_ref().take(*uniforms));
+            }
         }
         let mut left = &mut room.uniforms[..];
+        let (mut all_inputs, mut all_given) = (&self.links.inputs[..], &self.links.given[..]);
+        let mut all_outputs = &self.links.outputs[..];
         for piece in &self.pieces {
-            room.read.resize(piece.inputs.len(), Line::default());
-            for (to, from) in room.read.iter_mut().zip(&piece.inputs) {
+            let [reads, given, constants, writes] = piece.counts;
+            room.read.resize(reads, Line::default());
+            for (to, from) in room.read.iter_mut().zip(first_of(&mut all_inputs, reads)) {
                 match *from {
                     Operand::Value(k) => *to = room.kept[k as usize],
                     Operand::Input(k) => to.0 = inputs[k as usize],
@@ -120,21 +150,29 @@ impl Pieces {
                     }
                 }
             }
-            let (own, others) = left.split_at_mut(piece.given.len() + piece.uniforms.len());
+            let (own, others) = left.split_at_mut(given + constants);
             left = others;
-            for (to, from) in own.iter_mut().zip(&piece.given) {
+            for (to, from) in own.iter_mut().zip(first_of(&mut all_given, given)) {
                 *to = uniforms[*from as usize];
             }
             let kept = &mut room.kept[piece.kept.clone()];
             let [at_second, at_third] = piece.areas.clone();
             let parts = [bytemuck::cast_slice_mut(kept), &mut second[at_second], &mut third[at_third]];
             run(piece.shape, bytemuck::cast_slice(&room.read), own, parts);
-            let own = &room.kept[piece.kept.end - piece.outputs.len()..];
-            for ((area, k), found) in piece.outputs.iter().zip(own) {
-                [&mut *first, &mut *second, &mut *third][*area][*k as usize] = found.0;
+            let own = &room.kept[piece.kept.end - writes..];
+            for ((area, k), found) in first_of(&mut all_outputs, writes).iter().zip(own) {
+                [&mut *first, &mut *second, &mut *third][*area as usize][*k as usize] = found.0;
             }
         }
     }
+}
+
+/// Removes the first items of a slice and returns them.
+#[inline(always)]
+fn first_of<'s, T>(slice: &mut &'s [T], count: usize) -> &'s [T] {
+    let (first, rest) = slice.split_at(count);
+    *slice = rest;
+    first
 }
 
 /// Working memory of the pieces of one program.
@@ -153,10 +191,37 @@ struct Line(Lanes);
 
 const _: () = assert!(size_of::<Line>() == LANES * size_of::<f64>());
 
+/// Places of stored values while pieces are arranged.
+#[derive(Default)]
+struct Memory {
+    size: usize,
+    /// Starts of free ranges, by their sizes.
+    free: BTreeMap<usize, Vec<usize>>,
+    /// Ranges that later pieces read, by the last of these.
+    in_use: BTreeMap<usize, Vec<Range<usize>>>,
+}
+
+impl Memory {
+    /// Start of a range of this size for values of this piece. Inputs are read before a piece stores values: it may
+    /// replace those that no later piece reads.
+    fn place(&mut self, piece: usize, last_reader: usize, size: usize) -> usize {
+        let later = self.in_use.split_off(&(piece + 1));
+        for range in mem::replace(&mut self.in_use, later).into_values().flatten() {
+            self.free.entry(range.len()).or_default().push(range.start);
+        }
+        let start = self.free.get_mut(&size).and_then(Vec::pop).unwrap_or(self.size);
+        self.size = self.size.max(start + size);
+        self.in_use.entry(last_reader).or_default().push(start..start + size);
+        start
+    }
+}
+
 /// Assignment of instructions to pieces.
 struct Assignment {
     /// True if a later piece reads the value.
     is_read: Vec<bool>,
+    /// Last piece that reads values of each piece.
+    last_readers: Vec<usize>,
     pieces: Vec<Members>,
     ends: [usize; AREAS - 1],
 }
@@ -182,12 +247,15 @@ impl Assignment {
         }
         let many = piece_of_instruction.iter().max().map_or(1, |last| last + 1);
         let mut pieces = vec![Members::default(); many];
+        let mut last_readers: Vec<usize> = (0..many).collect();
         for (k, instruction) in program.instructions.iter().enumerate() {
             let piece = piece_of_instruction[k];
             pieces[piece].instructions.push(k as u32);
             for operand in instruction.operands() {
                 if let Operand::Value(v) = operand {
-                    is_read[v as usize] |= piece_of_instruction[v as usize] != piece;
+                    let source = piece_of_instruction[v as usize];
+                    is_read[v as usize] |= source != piece;
+                    last_readers[source] = last_readers[source].max(piece);
                 }
             }
         }
@@ -207,7 +275,7 @@ impl Assignment {
             piece = computed(k).unwrap_or(piece);
             pieces[piece].outputs[area].push(k as u32);
         }
-        Self { is_read, pieces, ends }
+        Self { is_read, last_readers, pieces, ends }
     }
 }
 
@@ -274,14 +342,15 @@ impl Members {
         self.instructions.is_empty() && self.outputs.iter().all(Vec::is_empty)
     }
 
-    /// Returns the piece, its common form, and its constants; its values are stored from index `kept` on.
+    /// Returns the piece, its links, its common form, and its constants; `place` returns the index from which on this
+    /// number of values is stored.
     fn canonical(
         &self,
         program: &Program,
         cut: &Assignment,
-        kept: usize,
+        place: impl FnOnce(usize) -> usize,
         kept_at: &mut [u32],
-    ) -> (Piece, Form, Vec<f64>) {
+    ) -> (Piece, Links, Form, Vec<f64>) {
         let mut names = Names {
             program,
             kept_at,
@@ -310,19 +379,20 @@ impl Members {
                     areas[area - 1] = first as usize - begin..last as usize + 1 - begin;
                     written.extend(outputs);
                 }
-                _ => copied.extend(own.map(|k| (area, k))),
+                _ => copied.extend(own.map(|k| (area as u32, k))),
             }
         }
-        let copies = copied.iter().map(|(area, k)| k + begins[*area] as u32);
+        let copies = copied.iter().map(|(area, k)| k + begins[*area as usize] as u32);
         let given = copies.chain(written.iter().copied()).map(|k| program.outputs[k as usize]);
         let outputs = read.iter().map(|k| Operand::Value(*k)).chain(given);
         let outputs: Vec<Operand> = outputs.map(|operand| names.of(operand)).collect();
         let Names { inputs, given, constants, .. } = names;
 
+        let all = read.len() + copied.len();
+        let kept = place(all);
         for (line, k) in read.iter().enumerate() {
             kept_at[*k as usize] = (kept + line) as u32;
         }
-        let all = read.len() + copied.len();
         let form = Form {
             instructions,
             outputs,
@@ -331,22 +401,14 @@ impl Members {
             constants: constants.len(),
             ends: [all, all + areas[0].len()],
         };
-        let piece = Piece {
-            shape: 0,
-            inputs,
-            given,
-            uniforms: Vec::new(),
-            kept: kept..kept + all,
-            outputs: copied,
-            areas,
-        };
-        (piece, form, constants)
+        let piece = Piece { shape: 0, counts: [0; 4], kept: kept..kept + all, areas };
+        (piece, Links { inputs, given, uniforms: Vec::new(), outputs: copied }, form, constants)
     }
 }
 
 impl Form {
     /// Returns the program of pieces of one shape; constants that differ become uniforms.
-    fn shape(self, same: &[usize], constants: &[Vec<f64>], pieces: &mut [Piece]) -> Shape {
+    fn shape(self, same: &[usize], constants: &[Vec<f64>], links: &mut [Links]) -> Shape {
         let of = |k: usize, n: usize| constants[k][n].to_bits();
         let mut program = Program { inputs: self.inputs, uniforms: self.given, ..Program::default() };
         let mut places = Vec::with_capacity(self.constants);
@@ -357,7 +419,7 @@ impl Form {
             } else {
                 places.push(Operand::Uniform(program.uniforms as u32));
                 program.uniforms += 1;
-                same.iter().for_each(|k| pieces[*k].uniforms.push(constants[*k][n]));
+                same.iter().for_each(|k| links[*k].uniforms.push(constants[*k][n]));
             }
         }
         let place = |operand| match operand {

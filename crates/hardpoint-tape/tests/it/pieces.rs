@@ -96,7 +96,8 @@ fn links_of_a_chain_share_their_code() {
     assert!(pieces.shapes.len() <= 4, "{}", pieces.shapes.len());
     assert_eq!(pieces.pieces.len(), links);
     assert!(10 * pieces.instructions() < program.instructions.len());
-    assert!(pieces.pieces.iter().flat_map(|p| &p.inputs).all(|i| !matches!(i, Operand::Constant(_))));
+    // Each link reads the one before it alone, whose numbers the next one replaces.
+    assert!(pieces.kept < 10, "{} values are stored", pieces.kept);
     let inputs = numbers(&mut Random(7), links);
     let found = in_pieces(&pieces, &inputs, &[], [1, 3 * links, 0]);
     assert_eq!(bits(&found), bits(&whole(&program, &inputs, &[])));

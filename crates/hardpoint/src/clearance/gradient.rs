@@ -237,10 +237,9 @@ impl GradientBatch {
 
 /// Adds the products of the factors of a body with its sensitivity.
 fn add_products(sum: &mut [Lanes; 3], factors: &[Lanes; FACTORS], d: &[Lanes; BodySensitivity::NUMBERS]) {
-    let vector = |k: usize| &factors[3 * k..3 * k + 3];
-    let [f, fd, fdd, twice_fd, t, td, tdd, spin] = number::each(&[0, 1, 2, 3, 4, 5, 6, 7], vector);
-    let change = |k: usize| &d[3 * k..3 * k + 3];
-    let [dr, dpi, dv, domega, da, dalpha] = number::each(&[0, 1, 2, 3, 4, 5], change);
+    let (factors, d) = (factors.as_chunks::<3>().0, d.as_chunks::<3>().0);
+    let ([f, fd, fdd, twice_fd, t, td, tdd, spin], [dr, dpi, dv, domega, da, dalpha]) =
+        (factors.first_chunk().expect("eight vectors"), d.first_chunk().expect("six vectors"));
     add(&mut sum[0], [(f, dr), (t, dpi)]);
     add(&mut sum[1], [(fd, dr), (f, dv), (td, dpi), (t, domega)]);
     add(&mut sum[2], [(fdd, dr), (twice_fd, dv), (f, da), (tdd, dpi), (spin, domega), (t, dalpha)]);
@@ -248,11 +247,13 @@ fn add_products(sum: &mut [Lanes; 3], factors: &[Lanes; FACTORS], d: &[Lanes; Bo
 
 /// Adds scalar products, lane by lane.
 #[inline(always)]
-fn add<const N: usize>(sum: &mut Lanes, products: [(&[Lanes], &[Lanes]); N]) {
+fn add<const N: usize>(sum: &mut Lanes, products: [(&[Lanes; 3], &[Lanes; 3]); N]) {
     let mut total = *sum;
-    for (a, b) in products.into_iter().flat_map(|(a, b)| a.iter().zip(b)) {
-        for lane in 0..LANES {
-            total[lane] += a[lane] * b[lane];
+    for (a, b) in products {
+        for n in 0..3 {
+            for lane in 0..LANES {
+                total[lane] += a[n][lane] * b[n][lane];
+            }
         }
     }
     *sum = total;
