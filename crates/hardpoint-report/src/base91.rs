@@ -15,26 +15,26 @@ pub fn length(bytes: usize) -> usize {
     2 * pairs + rest.div_ceil(SINGLE).min(2)
 }
 
-/// Text of bytes, the lowest bits first.
+/// Text of bytes, the lowest bits first. It has no iterators, which cost the most of its time where it is not optimised.
 pub fn encode(bytes: &[u8]) -> String {
-    let mut text = String::with_capacity(length(bytes.len()));
-    let mut digits = |number: u32, count| {
-        for digit in [number % 91, number / 91].into_iter().take(count) {
-            text.push(char::from(DIGITS[digit as usize]));
+    let mut text = vec![0; length(bytes.len())];
+    let (mut number, mut bits, mut byte, mut at) = (0_usize, 0, 0, 0);
+    while at < text.len() {
+        while bits < PAIR && byte < bytes.len() {
+            number |= (bytes[byte] as usize) << bits;
+            bits += 8;
+            byte += 1;
         }
-    };
-    let (mut number, mut bits) = (0, 0);
-    for byte in bytes {
-        number |= u32::from(*byte) << bits;
-        bits += 8;
-        if bits >= PAIR {
-            digits(number & ((1 << PAIR) - 1), 2);
-            number >>= PAIR;
-            bits -= PAIR;
+        let pair = number & ((1 << PAIR) - 1);
+        text[at] = DIGITS[pair % 91];
+        if at + 1 < text.len() {
+            text[at + 1] = DIGITS[pair / 91];
         }
+        number >>= PAIR;
+        bits = bits.saturating_sub(PAIR);
+        at += 2;
     }
-    digits(number, bits.div_ceil(SINGLE).min(2));
-    text
+    String::from_utf8(text).expect("all digits are ASCII")
 }
 
 /// Bytes of a text; `None` if it has other characters.

@@ -78,20 +78,27 @@ impl MeasureResults {
     /// Derivatives by variable b; NaN if there is no value, or if the variable is not admissible, see
     /// [`Sensitivities::admissibility`](crate::sensitivity::Sensitivities::admissibility).
     pub fn d(&self, k: usize, b: VariableId, m: usize) -> [f64; 3] {
-        array(|order| self.derivative(k, b, m, order))
+        let (values, d, place) = (self.values.row(k), self.d.row(k), self.place(b, m));
+        array(|order| self.known(b, values.get(3 * m + order), place.map(|place| d.get(place + order))))
     }
 
     /// One of them: of the value (`order` 0), the rate (1) or the acceleration (2).
     #[inline]
     pub fn derivative(&self, k: usize, b: VariableId, m: usize, order: usize) -> f64 {
-        let is_known = self.values.row(k).get(3 * m + order).is_finite();
-        if self.unknown[b.0] || !is_known {
-            return f64::NAN;
-        }
-        match self.places[b.0 * self.outputs.len() + m] {
-            Some(place) => finite(self.d.row(k).get(place + order)),
-            None => 0.0,
-        }
+        let d = self.place(b, m).map(|place| self.d.row(k).get(place + order));
+        self.known(b, self.values.row(k).get(3 * m + order), d)
+    }
+
+    /// Position of the derivatives of output m by variable b; `None` if they are zero.
+    #[inline(always)]
+    fn place(&self, b: VariableId, m: usize) -> Option<usize> {
+        self.places[b.0 * self.outputs.len() + m]
+    }
+
+    /// Derivative of a value by variable b.
+    #[inline(always)]
+    fn known(&self, b: VariableId, value: f64, d: Option<f64>) -> f64 {
+        if self.unknown[b.0] || !value.is_finite() { f64::NAN } else { d.map_or(0.0, finite) }
     }
 
     /// Largest magnitude over all output times of a [`derivative`](Self::derivative), of those that are known.
@@ -138,7 +145,7 @@ impl MeasureResults {
 
     /// Stores derivatives, if they have a position.
     pub fn set_d(&mut self, k: usize, b: VariableId, m: usize, numbers: [f64; 3]) {
-        if let Some(place) = self.places[b.0 * self.outputs.len() + m] {
+        if let Some(place) = self.place(b, m) {
             self.d.set(k, place, numbers);
         }
     }
