@@ -2,7 +2,7 @@
 
 use hardpoint::measure::clearances_of;
 use hardpoint::model::{BodyId, Dimension, Model, OutputSource, VariableId};
-use hardpoint::run::{Solution, tied_clearances};
+use hardpoint::run::{Solution, jumping_clearances, tied_clearances};
 use hardpoint::sensitivity::BodySensitivity;
 use hardpoint::space::Vec3;
 
@@ -141,7 +141,7 @@ impl Comparison {
                 }
                 let scale = builder.scale_of(m, order);
                 let (mut worst, mut time) = (0.0, 0.0);
-                for k in (0..steps).filter(|k| builder.is_defined(*k, m) && !undecided.at(*k, m)) {
+                for k in (0..steps).filter(|k| builder.is_defined(*k, m) && !undecided.at(*k, m, order)) {
                     let exact = measured.derivative(k, variable, m, order);
                     let of = |d: &Difference| d.outputs[k * columns + m][order];
                     let rest = |w: &[Difference]| {
@@ -185,6 +185,9 @@ impl Comparison {
 pub struct UndecidedOutputs {
     /// `[k * columns + m]`; empty if all are decided.
     places: Vec<bool>,
+    /// The same, of rates and accelerations alone: where the shapes of a clearance are parallel for a moment, its rate
+    /// jumps, and that of other designs at this time is on either side of the jump.
+    jumps: Vec<bool>,
     columns: usize,
 }
 
@@ -194,21 +197,27 @@ const KINK: f64 = 1e-4;
 
 impl UndecidedOutputs {
     /// Outputs that have a value and no derivative by a variable: where features of shapes are equally deep in each
-    /// other at an equilibrium. Along a motion such outputs have no rates either, which shows it.
+    /// other at an equilibrium. Along a motion such outputs have no rates either, which shows it, and rates may jump.
     pub fn undefined(model: &Model, solution: &Solution, variable: VariableId) -> Self {
-        if model.equilibrium.is_none() || model.clearances.is_empty() {
+        if model.clearances.is_empty() {
             return Self::default();
         }
         let (measured, clearances) = (&solution.measured, model.clearances.len());
         let columns = measured.outputs.len();
-        let tied = tied_clearances(model, &solution.motion);
         let of: Vec<_> = measured.outputs.iter().map(|output| clearances_of(model, output.source)).collect();
-        let undefined = |place: usize| {
-            let (k, m) = (place / columns, place % columns);
-            of[m].iter().any(|c| tied[k * clearances + c.0])
-                && measured.derivative(k, variable, m, 0).is_nan()
+        let all = |is: &dyn Fn(usize, usize) -> bool| -> Vec<bool> {
+            let steps = 0..solution.motion.len();
+            steps.flat_map(|k| (0..columns).map(move |m| (k, m))).map(|(k, m)| is(k, m)).collect()
         };
-        Self { places: (0..columns * solution.motion.len()).map(undefined).collect(), columns }
+        let any = |found: &[bool], k: usize, m: usize| of[m].iter().any(|c| found[k * clearances + c.0]);
+        if model.equilibrium.is_none() {
+            let jumping = jumping_clearances(model, &solution.motion);
+            return Self { places: Vec::new(), jumps: all(&|k, m| any(&jumping, k, m)), columns };
+        }
+        let tied = tied_clearances(model, &solution.motion);
+        let undefined =
+            |k: usize, m: usize| any(&tied, k, m) && measured.derivative(k, variable, m, 0).is_nan();
+        Self { places: all(&undefined), jumps: Vec::new(), columns }
     }
 
     /// Decides from the difference with the finest step. Undecided are magnitudes that reach zero within the step,
@@ -231,13 +240,15 @@ impl UndecidedOutputs {
         let undefined = Self::undefined(model, solution, d.variable);
         let undecided = |place: usize| {
             let (k, m) = (place / columns, place % columns);
-            d.outputs[place][0].is_nan() || undefined.at(k, m) || sources[m].iter().any(|m| kinked(k, *m))
+            d.outputs[place][0].is_nan() || undefined.at(k, m, 0) || sources[m].iter().any(|m| kinked(k, *m))
         };
-        Self { places: (0..columns * solution.motion.len()).map(undecided).collect(), columns }
+        let places = (0..columns * solution.motion.len()).map(undecided).collect();
+        Self { places, jumps: undefined.jumps.clone(), columns }
     }
 
-    fn at(&self, k: usize, m: usize) -> bool {
-        self.places.get(k * self.columns + m).copied().unwrap_or(false)
+    fn at(&self, k: usize, m: usize, order: usize) -> bool {
+        let is = |places: &[bool]| places.get(k * self.columns + m).copied().unwrap_or(false);
+        is(&self.places) || order > 0 && is(&self.jumps)
     }
 }
 
@@ -293,9 +304,9 @@ impl<'a> ComparisonBuilder<'a> {
         let (measured, d) = (&self.solution.measured, self.d);
         let columns = measured.outputs.len();
         for (m, output) in measured.outputs.iter().enumerate() {
-            let compared: Vec<bool> =
-                self.times().map(|k| self.is_defined(k, m) && !undecided.at(k, m)).collect();
             for order in 0..output.known.orders {
+                let is_compared = |k: usize| self.is_defined(k, m) && !undecided.at(k, m, order);
+                let compared: Vec<bool> = self.times().map(is_compared).collect();
                 let scale = self.scale_of(m, order);
                 let deviation = |row: usize| {
                     let analytic = measured.derivative(row * d.stride, d.variable, m, order);

@@ -208,7 +208,7 @@ impl<T: Real> Curve<T> {
 /// Steps of Newton's method for plain numbers: the start is within 1e-6 of the curves' size.
 const PLAIN_STEPS: usize = 4;
 /// Corrections that follow for numbers with derivatives: each completes one further order.
-const CORRECTIONS: usize = 5;
+pub(super) const CORRECTIONS: usize = 5;
 
 /// The nearest points of two curves near their points of parameter 0.
 ///

@@ -101,7 +101,8 @@ impl DistanceGradient {
         shapes: [ShapeId; 2],
         near: &Nearest,
     ) -> Option<Self> {
-        if !near.distance.is_finite() || near.is_tied || placed.is_without_direction(shapes, near) {
+        let has_no_direction = near.is_tied || near.between.is_some();
+        if !near.distance.is_finite() || has_no_direction || placed.is_without_direction(shapes, near) {
             return None;
         }
         let features = placed.features(shapes, near);

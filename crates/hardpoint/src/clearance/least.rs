@@ -10,6 +10,7 @@ use crate::number;
 use crate::space::Vec3;
 
 use super::circle::Circle;
+use super::feature::PARALLEL;
 
 /// Parts into which a path is divided first.
 const PARTS: usize = 16;
@@ -18,6 +19,9 @@ const PARTS: usize = 16;
 const MOST_PLACES: usize = 800;
 /// Difference of distances, as a fraction of their size, that is not resolved: some times the round-off.
 const RESOLUTION: f64 = 1e-13;
+/// Length, as a fraction of a segment, of the shortest stretch over which a distance is level: that of a far point is
+/// level about its minimum.
+const SHORTEST_LEVEL: f64 = 1e-4;
 /// Halvings of an interval until it is below the resolution of its ends.
 const HALVINGS: usize = 60;
 /// Halves of a part around its middle within which the minimum is: parts next to it are left out by bounds which are
@@ -234,6 +238,30 @@ pub(super) fn least_of_convex(slope: impl Fn(f64) -> f64, [from, to]: [f64; 2]) 
         raised = Some(at < 0.0);
     }
     0.5 * (low.0 + high.0)
+}
+
+/// Middle of the stretch around a place of a segment of this length over which a distance does not change, as along a
+/// face that is parallel to it; `None` if there is none. `slope` is that of the distance, by the parameter.
+pub(super) fn middle_of_level(slope: impl Fn(f64) -> f64, length: f64, t: f64) -> Option<f64> {
+    let is_level = |t: f64| slope(t).abs() <= PARALLEL * length;
+    // The place may be an end of the stretch.
+    let beside = number::both([-0.5, 0.5], |by| (t + by * SHORTEST_LEVEL).clamp(0.0, 1.0));
+    let inner = beside.into_iter().find(|t| is_level(*t))?;
+    let reach = |end: f64| {
+        if is_level(end) {
+            return end;
+        }
+        let (mut inside, mut outside) = (inner, end);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (inside + outside);
+            *(if is_level(middle) { &mut inside } else { &mut outside }) = middle;
+        }
+        inside
+    };
+    let (from, to) = (reach(0.0), reach(1.0));
+    let middle = 0.5 * (from + to);
+    // Of a surface with hollows, places between two stretches may be farther.
+    (to - from > SHORTEST_LEVEL && is_level(middle)).then_some(middle)
 }
 
 /// Part of a segment, from 0 to 1, at which it is nearest to a circle.

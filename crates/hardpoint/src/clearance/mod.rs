@@ -25,6 +25,7 @@ mod through_ring;
 
 pub(crate) use bodies::{ChangingBodies, MovingBodies};
 pub(crate) use core::Core;
+pub(crate) use feature::Feature;
 pub(crate) use gradient::{DistanceGradient, GradientBatch, moves_points_only};
 pub(crate) use nearest::Nearest;
 pub(crate) use placed::{NearestPair, PlacedShapes};

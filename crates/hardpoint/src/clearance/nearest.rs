@@ -6,7 +6,9 @@ use crate::space::{Real, Vec3};
 use super::circle::Circle;
 use super::core::Core;
 use super::feature::{Feature, PARALLEL, Placed, distance};
-use super::least::{Part, Path, Surroundings, least_along, least_of_convex, least_of_segment};
+use super::least::{
+    Part, Path, Surroundings, least_along, least_of_convex, least_of_segment, middle_of_level,
+};
 
 /// The nearest points of two cores.
 #[derive(Clone, Copy, Debug)]
@@ -25,6 +27,17 @@ pub(crate) struct Nearest {
     /// True if other features are as deep: those that are deepest change with any motion, and the distance has no
     /// derivatives.
     pub is_tied: bool,
+    /// Set where the deepest point of a segment is between two features that are as near.
+    pub between: Option<Between>,
+}
+
+/// Two features of a solid that are as near to the deepest point of a segment: where both are, the point remains.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Between {
+    /// Number of the core that is the segment.
+    pub segment: usize,
+    /// Features of the other core that are the nearest before and after the point.
+    pub features: [Feature; 2],
 }
 
 impl Nearest {
@@ -69,7 +82,7 @@ impl Nearest {
 
     /// Cores that overlap at a point, with no known way out.
     pub(super) fn overlapping(self, at: Vec3) -> Self {
-        Self { points: [at; 2], distance: 0.0, sign: 0.0, ..self }
+        Self { points: [at; 2], distance: 0.0, sign: 0.0, between: None, ..self }
     }
 
     /// True if two segments cross, and the distance is the way out of each other within their plane.
@@ -93,6 +106,20 @@ impl Nearest {
         Self { is_tied, ..self }
     }
 
+    /// The deepest point of a segment, at this place of it, by what is nearest to its places: where it could move
+    /// deeper, it is between the features that are nearest on both sides. They are those next to it: a third one may be
+    /// the nearest a little farther off.
+    pub(super) fn between_features(self, along: Vec3, t: f64, from: impl Fn(f64) -> Self) -> Self {
+        let slope = |near: &Self| near.gradient().dot(along);
+        let is_deepest = |[before, after]: &[Self; 2]| slope(before) < 0.0 && slope(after) > 0.0;
+        let mut beside = BESIDE.into_iter().map(|by| number::both([-by, by], |by| from(t + by)));
+        let Some(around) = beside.find(is_deepest).filter(|_| self.distance < 0.0) else {
+            return self.tied_along(along);
+        };
+        let features = around.map(|near| near.features[1]);
+        Self { between: Some(Between { segment: 0, features }), ..self }
+    }
+
     /// Gradient of the distance by the point from which it is measured; zero where both points are the same.
     pub(super) fn gradient(&self) -> Vec3 {
         let [p, q] = self.points;
@@ -101,12 +128,16 @@ impl Nearest {
 
     pub(super) fn reversed(self) -> Self {
         let ([a, b], [p, q]) = (self.features, self.points);
-        Self { features: [b, a], points: [q, p], ..self }
+        let between = self.between.map(|between| Between { segment: 1 - between.segment, ..between });
+        Self { features: [b, a], points: [q, p], between, ..self }
     }
 }
 
 /// A place nearer to an end of a segment than this fraction of it is the end: a search stops short of it by round-off.
 const AT_END: f64 = 1e-10;
+/// Distances of places from the deepest one, as fractions of a segment, at the least of which one feature alone is the
+/// nearest: above the round-off of the place, which a search without a change of the slope finds less exactly.
+const BESIDE: [f64; 3] = [1e-14, 1e-11, 1e-7];
 /// Cosine between a core and the way out of another one above which the way out is not the shortest: searches find the
 /// deepest point to the square root of the resolution of its depth.
 const TIED: f64 = 1e-6;
@@ -159,7 +190,7 @@ pub(crate) fn nearest(a: &Core, b: &Core) -> Nearest {
 }
 
 pub(super) fn found(features: [Feature; 2], points: [Vec3; 2], distance: f64) -> Nearest {
-    Nearest { features, points, distance, sign: 1.0, is_parallel: false, is_tied: false }
+    Nearest { features, points, distance, sign: 1.0, is_parallel: false, is_tied: false, between: None }
 }
 
 /// The point of a core that is nearest to a plane: the one that is farthest against its normal.
@@ -229,15 +260,18 @@ pub(super) fn from_point(p: Vec3, core: &Core) -> Nearest {
             found([own, Feature::Circle(0.0)], [p, q], (q - p).norm())
         }
         Core::Cylinder { middle, half_width } => {
-            let drum = Drum { middle: *middle, half_width: *half_width };
-            let (feature, q, distance) = drum.nearest(p);
-            found([own, feature], [p, q], distance)
+            from_drum(p, &Drum { middle: *middle, half_width: *half_width })
         }
         Core::HalfSpace { point, normal } => {
             let height = normal.dot(p - *point);
             found([own, Feature::Face(1.0)], [p, p - *normal * height], height)
         }
     }
+}
+
+fn from_drum(p: Vec3, drum: &Drum) -> Nearest {
+    let (feature, q, distance) = drum.nearest(p);
+    found([Feature::Point(0.0), feature], [p, q], distance)
 }
 
 /// The point of a circle that is nearest to a point; any of them for a point of the axis.
@@ -449,6 +483,13 @@ pub(super) fn segment_and_cylinder([a, b]: [Vec3; 2], drum: &Drum) -> Nearest {
         t = middle;
         (feature, q, distance) = drum.nearest(at(t));
         (is_parallel, is_inside) = (true, false);
+    } else if !is_parallel
+        && let Some(middle) = middle_of_level(|t| drum.slope(at(t), b - a), (b - a).norm(), t)
+    {
+        // It goes on beyond the rim of a cap that it is parallel to.
+        t = middle;
+        (feature, q, distance) = drum.nearest(at(t));
+        (is_parallel, is_inside) = (true, false);
     }
     // Over a cap, beside a parallel side, and at the edge between both within the cylinder, the point stays where it
     // is.
@@ -465,7 +506,10 @@ pub(super) fn segment_and_cylinder([a, b]: [Vec3; 2], drum: &Drum) -> Nearest {
         };
     let own = if slides { Feature::Line } else { Feature::Point(t) };
     let near = Nearest { is_parallel, ..found([own, feature], [at(t), q], distance) };
-    if is_inside && !slides { near.tied_along(b - a) } else { near }
+    if !is_inside || slides {
+        return near;
+    }
+    near.between_features(b - a, t, |t| from_drum(at(t), drum))
 }
 
 /// True if the distance from the axis has its minimum at a place along a segment.

@@ -14,7 +14,7 @@ use super::block::Block;
 use super::circle::Circle;
 use super::core::Core;
 use super::feature::{Feature, PARALLEL};
-use super::least::{Part, Path, Surroundings, least_along};
+use super::least::{Part, Path, Surroundings, least_along, middle_of_level};
 use super::nearest::{
     Nearest, along_circle, around_drum, found, from_point, nearer, segment_and_circle, segment_and_cylinder,
     segment_and_edge,
@@ -418,16 +418,27 @@ fn segment_and_surface([a, b]: [Vec3; 2], view: View<'_>) -> Nearest {
             near.distance
         });
     }
-    if !pierces {
-        return best;
-    }
-    if !view.is_closed() {
+    if pierces && !view.is_closed() {
         return best.overlapping(best.points[0]);
     }
-    let t = least_along(&Path::Segment([a, b]), &Within(view));
-    let near = view.nearest_to(a + (b - a) * t);
-    let near = Nearest { features: [Feature::Point(t), near.features[1]], ..near };
-    if t > 0.0 && t < 1.0 { near.tied_along(b - a) } else { near }
+    let e = b - a;
+    let from = |t: f64| {
+        let near = view.nearest_to(a + e * t);
+        Nearest { features: [Feature::Point(t), near.features[1]], ..near }
+    };
+    let t = match pierces {
+        true => least_along(&Path::Segment([a, b]), &Within(view)),
+        false => e.dot(best.points[0] - a) / e.dot(e),
+    };
+    // Of places that are as near, along a face that the segment is parallel to, the middle.
+    if let Some(middle) = middle_of_level(|t| from(t).gradient().dot(e), e.norm(), t) {
+        return Nearest { is_parallel: true, ..from(middle) };
+    }
+    match pierces {
+        true if t > 0.0 && t < 1.0 => from(t).between_features(e, t, from),
+        true => from(t),
+        false => best,
+    }
 }
 
 /// The nearest points of two surfaces; `place` moves points of the second into the frame of the first. Where they

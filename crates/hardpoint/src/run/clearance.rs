@@ -7,7 +7,7 @@ mod curves;
 mod pair_search;
 mod posed_motion;
 
-use crate::clearance::{ChangingBodies, PlacedShapes};
+use crate::clearance::{ChangingBodies, Feature, MovingBodies, Nearest, PlacedShapes};
 use crate::design::{BodyFixed, DesignMap, ShapeGeometry};
 use crate::measure::{clearance_of, clearances_of};
 use crate::model::{
@@ -33,6 +33,8 @@ const SAME_TIME: f64 = 1e-8;
 const MOST_PASSES: usize = 100;
 /// Rate of a distance below which a contact is grazing, as a fraction of the largest rate: its time has no derivative.
 const GRAZING: f64 = 1e-6;
+/// Difference of rates along a stretch, as a fraction of them, that is round-off.
+const JUMP: f64 = 1e-9;
 /// A distance that changes less than this fraction of the mechanism's size over a motion is constant: round-off of
 /// solved positions.
 const CONSTANT: f64 = 1e-10;
@@ -537,17 +539,44 @@ impl Analysis<'_> {
 /// nearest shapes are as deep in each other, or their cores meet. The distance has no derivatives there, unless the
 /// shapes do not move relative to each other.
 pub fn tied_clearances(model: &Model, motion: &Motion) -> Vec<bool> {
-    let fixed = DesignMap::of(model).fixed(&model.whole(&[])).map(Jet::constant);
-    let mut tied = Vec::new();
-    PosedMotion { model, motion, fixed }.each(0..motion.len(), |_, placed| {
-        let is_tied = |c: usize| {
-            let nearest = placed.nearest_pair(ClearanceId(c));
-            let shapes = |n: usize| model.clearances[c].pairs[n].shapes;
-            nearest.is_some_and(|(n, near)| near.is_tied || placed.is_without_direction(shapes(n), &near))
+    of_nearest(model, motion, |placed, shapes, near| {
+        near.is_tied || placed.is_without_direction(shapes, near)
+    })
+}
+
+/// The same: true where the nearest shapes are parallel and do not stay so. The rate of the distance jumps there from
+/// that of one end of their common stretch to that of the other.
+pub fn jumping_clearances(model: &Model, motion: &Motion) -> Vec<bool> {
+    let at_rest = model.equilibrium.is_some();
+    of_nearest(model, motion, |placed, shapes, near| {
+        let rate = |near: &Nearest| placed.distance(shapes, near).0[1];
+        let differs = |k: usize| {
+            let Feature::Point(at) = near.features[k] else { return false };
+            let mut other = *near;
+            other.features[k] = Feature::Point(0.5 * at);
+            let [here, there] = [rate(near), rate(&other)];
+            (here - there).abs() > JUMP * here.abs().max(there.abs())
         };
-        tied.extend((0..model.clearances.len()).map(is_tied));
+        near.is_parallel && !at_rest && (differs(0) || differs(1))
+    })
+}
+
+/// A property of the nearest shapes of each clearance over the motion of the nominal design, time by time.
+fn of_nearest(
+    model: &Model,
+    motion: &Motion,
+    is: impl Fn(&PlacedShapes<'_, Rates, MovingBodies>, [ShapeId; 2], &Nearest) -> bool,
+) -> Vec<bool> {
+    let fixed = DesignMap::of(model).fixed(&model.whole(&[])).map(Jet::constant);
+    let mut found = Vec::new();
+    PosedMotion { model, motion, fixed }.each(0..motion.len(), |_, placed| {
+        let of = |c: usize| {
+            let (n, near) = placed.nearest_pair(ClearanceId(c))?;
+            Some(is(&placed, model.clearances[c].pairs[n].shapes, &near))
+        };
+        found.extend((0..model.clearances.len()).map(|c| of(c) == Some(true)));
     });
-    tied
+    found
 }
 
 /// True if a metric of a clearance is its least value over the whole motion.

@@ -30,7 +30,7 @@ mod window;
 pub use analysis::Analysis;
 pub use clearance::{
     ClearanceMinimum, Clearances, Contact, MinimumPlace, PairClearance, PairCurve, ShapeDistance,
-    ShapeOnBodies, tied_clearances,
+    ShapeOnBodies, jumping_clearances, tied_clearances,
 };
 pub use driver_map::{BoundsOfOutputs, DriverMap};
 pub use driver_rates::DriverRates;
