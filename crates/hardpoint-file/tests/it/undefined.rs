@@ -176,7 +176,7 @@ fn an_optimisation_separates_a_rod_from_a_solid_that_it_begins_in() {
         (0.0, block, -13.0, -21.0, 1e-6),
         (0.001, block, -13.0, -21.0 + 0.001 * 45.0 / 60.0, 1e-6),
         // The corner at (35, y + 6) is 6 mm from the rod, whose slope is 5/12.
-        (25.0, "box = [30, 12, 20], frame = { position = \"S\" }", 12.0, 35.0 * 5.0 / 12.0 - 6.5 - 6.0, 1e-6),
+        (25.0, "box = [30, 12, 20], frame = { position = \"S\" }", 12.0, 35.0 * 5.0 / 12.0 - 6.5 - 6.0, 1e-5),
         (0.0, "cylinder = [\"S\", [50, -30, 5]], radius = 6", 2.0, 2.0 - 8.1302, 1e-4),
     ] {
         let text = format!(

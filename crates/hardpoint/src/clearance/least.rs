@@ -21,7 +21,7 @@ const MOST_PLACES: usize = 800;
 const RESOLUTION: f64 = 1e-13;
 /// Length, as a fraction of a segment, of the shortest stretch over which a distance is level: that of a far point is
 /// level about its minimum.
-const SHORTEST_LEVEL: f64 = 1e-4;
+pub(super) const SHORTEST_LEVEL: f64 = 1e-4;
 /// Halvings of an interval until it is below the resolution of its ends.
 const HALVINGS: usize = 60;
 /// Halves of a part around its middle within which the minimum is: parts next to it are left out by bounds which are

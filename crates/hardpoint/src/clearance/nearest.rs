@@ -27,17 +27,8 @@ pub(crate) struct Nearest {
     /// True if other features are as deep: those that are deepest change with any motion, and the distance has no
     /// derivatives.
     pub is_tied: bool,
-    /// Set where the deepest point of a segment is between two features that are as near.
-    pub between: Option<Between>,
-}
-
-/// Two features of a solid that are as near to the deepest point of a segment: where both are, the point remains.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Between {
-    /// Number of the core that is the segment.
-    pub segment: usize,
-    /// Features of the other core that are the nearest before and after the point.
-    pub features: [Feature; 2],
+    /// Where the deepest point of a segment is between two features of the other core that are as near: the second one.
+    pub between: Option<Feature>,
 }
 
 impl Nearest {
@@ -116,8 +107,8 @@ impl Nearest {
         let Some(around) = beside.find(is_deepest).filter(|_| self.distance < 0.0) else {
             return self.tied_along(along);
         };
-        let features = around.map(|near| near.features[1]);
-        Self { between: Some(Between { segment: 0, features }), ..self }
+        let [before, after] = around.map(|near| near.features[1]);
+        Self { features: [Feature::Point(t), before], between: Some(after), ..self }
     }
 
     /// Gradient of the distance by the point from which it is measured; zero where both points are the same.
@@ -128,8 +119,7 @@ impl Nearest {
 
     pub(super) fn reversed(self) -> Self {
         let ([a, b], [p, q]) = (self.features, self.points);
-        let between = self.between.map(|between| Between { segment: 1 - between.segment, ..between });
-        Self { features: [b, a], points: [q, p], between, ..self }
+        Self { features: [b, a], points: [q, p], ..self }
     }
 }
 
@@ -425,6 +415,12 @@ impl Drum {
         }
     }
 
+    /// True if a direction is parallel to the caps or to the axis, or nearly so.
+    fn is_level(&self, e: Vec3) -> bool {
+        let (along, square) = (self.middle.axis.dot(e), e.dot(e));
+        along * along <= PARALLEL * PARALLEL * square || along * along >= (1.0 - PARALLEL) * square
+    }
+
     /// Middle of the part of a segment, from 0 to 1, all of whose points are nearest to the side, as that at t is, or
     /// deepest within it; `None` if the segment is not parallel to the axis.
     fn middle_beside(&self, [a, b]: [Vec3; 2], t: f64) -> Option<f64> {
@@ -484,6 +480,7 @@ pub(super) fn segment_and_cylinder([a, b]: [Vec3; 2], drum: &Drum) -> Nearest {
         (feature, q, distance) = drum.nearest(at(t));
         (is_parallel, is_inside) = (true, false);
     } else if !is_parallel
+        && drum.is_level(b - a)
         && let Some(middle) = middle_of_level(|t| drum.slope(at(t), b - a), (b - a).norm(), t)
     {
         // It goes on beyond the rim of a cap that it is parallel to.

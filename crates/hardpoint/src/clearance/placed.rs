@@ -9,7 +9,7 @@ use super::bodies::{Bodies, MovingSegment, leave_their_plane};
 use super::circle::Circle;
 use super::core::Core;
 use super::feature::{CORRECTIONS, Feature, Placed, distance, nearest_points};
-use super::nearest::{Between, Nearest, nearest};
+use super::nearest::{Nearest, nearest};
 use super::surface::{View, core_and_surface, moved, surfaces};
 use super::through_ring::PlaceOnSegment;
 
@@ -241,8 +241,8 @@ impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
             let distance = self.changes(shapes) - self.rounds(shapes);
             return distance + T::constant(near.distance - distance.value());
         }
-        if let Some(between) = &near.between {
-            let distance = self.depth_between(shapes, near, between) - self.rounds(shapes);
+        if let Some(second) = near.between {
+            let distance = self.depth_between(shapes, near, second) - self.rounds(shapes);
             return distance + T::constant(near.distance - distance.value());
         }
         let apart = near.distance_between(self.features(shapes, near));
@@ -256,18 +256,18 @@ impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
     ///
     /// With d and e the distances from the features at a place u along the segment, `u <- u - (d - e) / (d_u - e_u)`
     /// completes one order of the derivatives per step, the slopes in plain numbers.
-    fn depth_between(&self, shapes: [ShapeId; 2], near: &Nearest, between: &Between) -> T {
-        let own = between.segment;
+    fn depth_between(&self, shapes: [ShapeId; 2], near: &Nearest, second: Feature) -> T {
+        let own = usize::from(!matches!(near.features[0], Feature::Point(_) | Feature::EdgePoint(..)));
         let at = near.points[own];
-        let feature = if let Feature::EdgePoint(ends, _) = near.features[own] {
+        let line = if let Feature::EdgePoint(ends, _) = near.features[own] {
             Feature::Edge(ends)
         } else {
             Feature::Line
         };
-        let (Placed::Line { from: a, along }, _) = self.feature(shapes[own], feature, at) else {
+        let (Placed::Line { from: a, along }, _) = self.feature(shapes[own], line, at) else {
             unreachable!("a segment has a line")
         };
-        let to = number::both(between.features, |f| self.feature(shapes[1 - own], f, at));
+        let to = number::both([near.features[1 - own], second], |f| self.feature(shapes[1 - own], f, at));
         let of_point = |k: usize, p: Vec3<T>, sign: f64| {
             let (placed, less) = &to[k];
             distance(&Placed::Point(p), placed, [at; 2]) * sign - *less
@@ -279,8 +279,8 @@ impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
             let n = nearest_points([&Placed::Point(at), &to[k].0.value()], [at; 2]).map(|(_, n)| n);
             n.map_or(f64::NAN, |n| -signs[k] * n.dot(along.value()))
         };
-        let (line, slopes) = (along.value(), slope(0) - slope(1));
-        let mut u = T::constant(line.dot(at - a.value()) / line.dot(line));
+        let (e, slopes) = (along.value(), slope(0) - slope(1));
+        let mut u = T::constant(e.dot(at - a.value()) / e.dot(e));
         for _ in 0..CORRECTIONS {
             let [d, e] = number::both([0, 1], |k| of_point(k, along.times_plus(u, a), signs[k]));
             u -= (d - e) * (1.0 / slopes);

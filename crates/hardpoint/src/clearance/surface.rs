@@ -14,11 +14,14 @@ use super::block::Block;
 use super::circle::Circle;
 use super::core::Core;
 use super::feature::{Feature, PARALLEL};
-use super::least::{Part, Path, Surroundings, least_along, middle_of_level};
+use super::least::{Part, Path, SHORTEST_LEVEL, Surroundings, least_along, middle_of_level};
 use super::nearest::{
     Nearest, along_circle, around_drum, found, from_point, nearer, segment_and_circle, segment_and_cylinder,
     segment_and_edge,
 };
+
+/// Distance of a point from a surface that is none, as a fraction of a segment along it.
+const ON_SURFACE: f64 = 1e-9;
 
 /// A surface in the frame in which its points are given.
 #[derive(Clone, Copy)]
@@ -144,6 +147,23 @@ impl View<'_> {
         };
         let inside = matches!(self, Self::Mesh(surface) if surface.is_inside(p, part, q));
         found([own, of_part(part)], [p, q], if inside { -apart } else { apart })
+    }
+
+    /// True if it goes on along a segment, or against it, from the point q that is nearest to a point p of the segment.
+    fn goes_on(&self, [p, q]: [Vec3; 2], e: Vec3) -> bool {
+        let (n, within) = (p - q, ON_SURFACE * e.norm());
+        let is_on = |p: Vec3| {
+            let mut found = false;
+            self.search(within, &|centre| (centre - p).norm(), &mut |t| {
+                let (corners, ids) = self.triangle(t);
+                let distance = (nearest_of_triangle(p, corners, ids).0 - p).norm();
+                found |= distance <= within;
+                distance
+            });
+            found
+        };
+        n.dot(e).abs() <= PARALLEL * n.norm() * e.norm()
+            && [-0.5, 0.5].into_iter().any(|by| is_on(q + e * (by * SHORTEST_LEVEL)))
     }
 
     /// The nearest of all triangles, without a search.
@@ -431,7 +451,9 @@ fn segment_and_surface([a, b]: [Vec3; 2], view: View<'_>) -> Nearest {
         false => e.dot(best.points[0] - a) / e.dot(e),
     };
     // Of places that are as near, along a face that the segment is parallel to, the middle.
-    if let Some(middle) = middle_of_level(|t| from(t).gradient().dot(e), e.norm(), t) {
+    if (pierces || view.goes_on(best.points, e))
+        && let Some(middle) = middle_of_level(|t| from(t).gradient().dot(e), e.norm(), t)
+    {
         return Nearest { is_parallel: true, ..from(middle) };
     }
     match pierces {
