@@ -9,7 +9,7 @@ use crate::diagnose;
 use crate::summary::StopFact;
 
 /// Solution of the rigid mechanism at these output times, or a sentence on why there is none; `None` for a model
-/// without equilibrium.
+/// without equilibrium, or without output times: that of a motion of which nothing was solved.
 pub(crate) fn solve(
     file: &ModelFile,
     formulation: Formulation,
@@ -26,7 +26,7 @@ pub fn solve_at(
     times: &[f64],
 ) -> Option<Result<Solution, String>> {
     let model = &file.model;
-    let equilibrium = model.equilibrium.as_ref()?;
+    let equilibrium = model.equilibrium.as_ref().filter(|_| !times.is_empty())?;
     let missing = |why: &str| Err(format!("The rigid mechanism is not shown: {why}."));
     if !equilibrium.released.is_empty() {
         let released = equilibrium.released.iter().map(|d| format!("`{}`", model.drivers[d.0].name));

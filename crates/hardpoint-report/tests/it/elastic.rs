@@ -247,3 +247,27 @@ pressed = { type = "spring", from = { body = "ground", at = [200, 0, 0] }, to = 
         ]
     );
 }
+
+#[test]
+fn a_motion_that_ends_before_its_first_output_time_has_a_summary() {
+    const SNAPPED: &str = r#"
+        name = "hinge pulled over by a spring"
+        units = { length = "mm", angle = "deg" }
+        hardpoints = { A = [0, 0, 0], B = [100, 0, 0] }
+        bodies = { arm = {} }
+        joints.A = { type = "revolute", bodies = ["ground", "arm"], at = "A", axis = "y", axis2 = "x" }
+        points.B = { body = "arm", at = "B" }
+        drivers.turn = { joint = "A", law = "10 + t" }
+        forces.hinge = { type = "elastic_joint", joint = "A", x = 100, about_x = 1, about_z = 2 }
+        forces.pull = { type = "spring", from = { body = "ground", at = [0, 0, 100] }, to = "B", stiffness = 1, preload = 1e7 }
+        equilibrium = {}
+        metrics.low = { of = "B.z", take = "min" }
+        time = { end = 1, steps = 2 }
+    "#;
+    let file = hardpoint_file::parse(SNAPPED, "snapped.toml").unwrap_or_else(|e| panic!("{e}"));
+    let analysis = Analysis::new(&file.model).unwrap();
+    let course = Course::of(&file.model, &analysis.run());
+    let summary = Summary::new(&file, &analysis, &course);
+    assert_eq!((summary.steps.solved, summary.metrics[0].value), (0, None));
+    assert!(summary.stop.is_some());
+}
