@@ -291,8 +291,8 @@ impl Laws {
         }
         if !by_program {
             let (drivers, forces) = laws.split_at_mut(ORDERS * one.drivers.len());
-            for (k, law) in one.model.laws_of_forces().enumerate() {
-                forces[k] = each(times, |t| law.at(t).value());
+            for (force, law) in forces.iter_mut().zip(one.model.laws_of_forces()) {
+                *force = each(times, |t| law.at(t).value());
             }
             for d in 0..one.drivers.len() {
                 for lane in 0..LANES {

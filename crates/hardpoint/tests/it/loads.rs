@@ -307,6 +307,25 @@ fn forces_that_go_by_laws_and_speeds_are_the_same_by_program() {
 }
 
 #[test]
+fn laws_beyond_the_range_of_their_program_are_those_of_the_kernel() {
+    let mut draft = press();
+    // Without loads the steps need no laws of forces.
+    draft.measures.clear();
+    draft.drivers[0].law = Law::parse("sin(10*t)").unwrap();
+    // An argument of some 1e6 is beyond the range of a recorded sine.
+    draft.times = (0..=64).map(|k| 1e5 + 0.01 * f64::from(k)).collect();
+    let model = Model::from_draft(&draft).unwrap();
+    let solve = |execution| Analysis::new(&model).unwrap().executed(execution).run();
+    let [right, again] = [Execution::Kernel, Execution::Compiled].map(solve);
+    assert_eq!(right.motion.len(), 65);
+    for k in 0..65 {
+        for (x, y) in right.motion.coordinates(k).zip(again.motion.coordinates(k)) {
+            assert!((x - y).abs() < SAME, "{k}: {x} {y}");
+        }
+    }
+}
+
+#[test]
 fn sensitivities_of_loads_are_those_of_solved_designs() {
     compare_with_solved(&press(), &LOADS);
 }
