@@ -169,16 +169,28 @@ pub fn run(options: &Run) -> Outcome {
     outcome
 }
 
-/// Names of the folders of cases that an earlier run left in the folder of the results, by its summary.
+/// Names of the folders of cases that an earlier run left in the folder of the results, by its summary and by theirs:
+/// a run of one case alone replaces the former.
 fn cases_in(whole: &Path) -> Vec<String> {
-    #[derive(Deserialize)]
+    #[derive(Default, Deserialize)]
+    #[serde(default)]
     struct Earlier {
-        #[serde(default)]
+        case: Option<String>,
         cases: Vec<CaseDone>,
     }
-    let text = std::fs::read_to_string(whole.join(SUMMARY)).unwrap_or_default();
-    let cases = serde_json::from_str(&text).map_or(Vec::new(), |Earlier { cases }| cases);
-    cases.into_iter().filter(|case| file_name(&case.case) == case.folder).map(|case| case.folder).collect()
+    let read = |folder: &Path| -> Earlier {
+        let text = std::fs::read_to_string(folder.join(SUMMARY)).unwrap_or_default();
+        serde_json::from_str(&text).unwrap_or_default()
+    };
+    let inside = std::fs::read_dir(whole).into_iter().flatten().flatten();
+    let inside =
+        inside.filter_map(|entry| Some((read(&entry.path()).case?, entry.file_name().into_string().ok()?)));
+    let listed = read(whole).cases.into_iter().map(|done| (done.case, done.folder));
+    listed
+        .chain(inside)
+        .filter(|(case, folder)| file_name(case) == *folder)
+        .map(|(_, folder)| folder)
+        .collect()
 }
 
 /// Writes the metrics of all cases, if there are any.
@@ -322,6 +334,7 @@ fn run_in(
     let solution = &course.kept;
     let mut summary = Summary::new(file, &analysis, &course);
     (summary.timings.read, summary.timings.solve) = (read, solve);
+    summary.case = case.map(str::to_owned);
     let outputs = format!("the files in `{}`", path.display());
     summary.diagnostics = diagnose::all(file, &summary, &course, Some(&outputs));
     let written = tables.end(&mut folder, &solution.sensitivities.admissibility, session.for_a_moment());

@@ -24,6 +24,9 @@ use crate::validity::ValidityFact;
 pub struct Summary {
     /// Program and version.
     pub generator: &'static str,
+    /// Case of a run of all cases, each of which has a folder of its own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub case: Option<String>,
     /// Status at the end of the run.
     pub status: RunStatus,
     /// Facts of the mechanism.
@@ -253,6 +256,7 @@ impl Summary {
         let effort = solution.motion.effort;
         Self {
             generator: crate::GENERATOR,
+            case: None,
             status: match &solution.stop {
                 None => RunStatus::Complete,
                 Some(s) if s.kind == StopKind::Interrupted => RunStatus::Interrupted,

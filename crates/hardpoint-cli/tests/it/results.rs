@@ -37,6 +37,9 @@ fn files_of_cases_that_are_no_longer_in_the_model_are_removed() {
     let has = |folder: &str| bench.path(&format!("out/{folder}")).exists();
     cases(&["one", "two", "kept"]);
     bench.put("out/kept/notes.txt", "of the user");
+    // A run of one case has the summary of that case beside the folders.
+    assert_eq!(bench.run(&["run", "slider.toml", "-o", "out", "--case", "two"]).status.code(), Some(0));
+    assert!(bench.json("out/summary.json").get("cases").is_none());
     cases(&["one", "three"]);
     assert!(has("one/summary.json") && has("three/summary.json") && !has("two"));
     assert!(has("kept/notes.txt") && !has("kept/summary.json") && !has("kept/report.html"));
