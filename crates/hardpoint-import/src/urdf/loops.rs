@@ -31,6 +31,10 @@ const LOOP: Vocabulary = Vocabulary {
     ],
     irrelevant: &["physics", "sensor"],
 };
+/// Elements with the frames of a joint on both links.
+const ORIGINS: [&str; 2] = ["parent_origin", "child_origin"];
+/// Body and frame of an end of a joint; `None` if its link is missing.
+type End = Option<(usize, Pose)>;
 /// Known content of the axis of a joint of SDFormat.
 const AXIS: Vocabulary =
     Vocabulary { attributes: &[], read: &["xyz", "limit", "dynamics"], irrelevant: &["physics"] };
@@ -324,17 +328,23 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             let links: Vec<_> =
                 children(node).filter(|n| ["link1", "link2"].contains(&n.tag_name().name())).collect();
             let ends = match links[..] {
-                [a, b] => [a, b].map(|end| {
-                    let (body, outer) = self.link_frame(end, "link")?;
-                    Some((body, outer.compose(pose(end, self.notes))))
-                }),
+                [a, b] => {
+                    let ends = [a, b].map(|end| {
+                        let (body, outer) = self.link_frame(end, "link")?;
+                        Some((body, outer.compose(pose(end, self.notes))))
+                    });
+                    self.at_origins(node, ends).unwrap_or(ends)
+                }
                 _ => self.ends(node),
             };
             xml::unknown(0, node, &name, LOOP, self.notes);
             self.unsupported_of_loop(node, &name);
             if let [Some(i), Some(j)] = ends {
                 // Directions are those of the first link, except for fixed joints with both orientations.
-                let both = links.len() == 2 && links.iter().all(|end| end.has_attribute("rpy"));
+                let origins = ORIGINS.map(|key| child(node, key));
+                let both = [[0, 1].map(|k| links.get(k).copied()), origins]
+                    .iter()
+                    .any(|ends| ends.iter().all(|end| end.is_some_and(|end| end.has_attribute("rpy"))));
                 let rot = if kind == "fixed" && both { j.1.rot } else { i.1.rot };
                 let j = (j.0, Pose { rot, r: j.1.r });
                 self.connect(node, &name, &kind, [i, j], axis);
@@ -400,7 +410,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
     }
 
     /// Returns the body and pose of the link that an attribute names.
-    fn link_frame(&mut self, node: Node<'a, 'i>, key: &str) -> Option<(usize, Pose)> {
+    fn link_frame(&mut self, node: Node<'a, 'i>, key: &str) -> End {
         let link = node.attribute(key).unwrap_or_default().trim();
         let found = self.poses.get(link).copied();
         if found.is_none() {
@@ -413,14 +423,12 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
 
     /// Returns the two ends of a joint with `parent` and `child`: the frame is that of the child, or relative to the
     /// parent if `origin` is given.
-    fn ends(&mut self, node: Node<'a, 'i>) -> [Option<(usize, Pose)>; 2] {
+    fn ends(&mut self, node: Node<'a, 'i>) -> [End; 2] {
         let [parent, body] = ["parent", "child"]
             .map(|end| self.link_of(node, end).and_then(|link| self.poses.get(&link).copied()));
         let (Some((i, outer)), Some((j, inner))) = (parent, body) else { return [None, None] };
-        let on =
-            |reader: &mut Self, key, outer: Pose| Some(outer.compose(pose(child(node, key)?, reader.notes)));
-        if let (Some(a), Some(b)) = (on(self, "parent_origin", outer), on(self, "child_origin", inner)) {
-            return [Some((i, a)), Some((j, b))];
+        if let Some(ends) = self.at_origins(node, [parent, body]) {
+            return ends;
         }
         let frame = match (child(node, "origin"), child(node, "pose")) {
             (Some(_), _) => outer.compose(self.origin(node)),
@@ -432,5 +440,17 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             _ => inner,
         };
         [Some((i, frame)), Some((j, frame))]
+    }
+
+    /// Returns the ends at `parent_origin` and `child_origin` in the frames of both ends; `None` if the joint has neither.
+    /// An end without one is at its frame.
+    fn at_origins(&mut self, node: Node<'a, 'i>, ends: [End; 2]) -> Option<[End; 2]> {
+        let origins = ORIGINS.map(|key| child(node, key));
+        origins.iter().any(Option::is_some).then(|| {
+            [0, 1].map(|k| {
+                let ((body, frame), Some(origin)) = (ends[k]?, origins[k]) else { return ends[k] };
+                Some((body, frame.compose(pose(origin, self.notes))))
+            })
+        })
     }
 }

@@ -169,6 +169,9 @@ fn loops_of_every_program_close() {
         // Notation of Isaac Sim.
         r#"<loop_joint name="C" type="spherical"><link1 link="coupler" rpy="0 0 0" xyz="0.3 0 0.1"/><link1 link="rocker" rpy="0 0 0" xyz="0 0 0.2"/></loop_joint>"#,
         r#"<loop_joint name="C" type="revolute"><parent link="coupler"/><child link="rocker"/><parent_origin xyz="0.3 0 0.1"/><child_origin xyz="0 0 0.2"/><axis xyz="0 1 0" frame="parent"/></loop_joint>"#,
+        r#"<loop_joint name="C" type="revolute"><link1 link="coupler"/><link2 link="rocker"/><parent_origin xyz="0.3 0 0.1"/><child_origin xyz="0 0 0.2"/><axis xyz="0 1 0"/></loop_joint>"#,
+        // An end without an origin is at its link.
+        r#"<loop_joint name="C" type="revolute"><link1 link="coupler"/><link2 link="rocker" xyz="0 0 0.2"/><parent_origin xyz="0.3 0 0.1"/><axis xyz="0 1 0"/></loop_joint>"#,
         r#"<drake:ball_constraint xmlns:drake="http://drake.mit.edu"><drake:ball_constraint_body_A name="coupler"/><drake:ball_constraint_body_B name="rocker"/><drake:ball_constraint_p_AP value="0.3 0 0.1"/><drake:ball_constraint_p_BQ value="0 0 0.2"/></drake:ball_constraint>"#,
         r#"<gazebo><joint name="C" type="revolute"><pose>0 0 0.2 0 0 0</pose><parent>coupler</parent><child>rocker</child><axis><xyz>0 1 0</xyz></axis></joint></gazebo>"#,
         // Frames of onshape-to-robot.
