@@ -475,6 +475,14 @@ fn faults_of_limits_are_reported_with_a_remedy() {
     assert_eq!(of("limits.displacement = { min = 3, max = 2 }").0, "HP0266");
     assert_eq!(of("limits.displacement = { min = 3, max = 3 }").0, "HP0266");
     assert_eq!(of("limits.displacement = {}").0, "HP0266");
+    let ball = FOUR_BAR.replace("PIN", "spherical").replace("LIMIT_D", "");
+    let ball =
+        |limit: &str| codes(&ball.replace("LIMIT_C", &format!(", limits = {{ articulation = {limit} }}")));
+    assert!(ball("{ max = 0.1 }").is_empty());
+    assert_eq!(
+        (ball("{ max = -0.1 }")[0].0, ball("{ max = -0.1 }")[0].1.as_str()),
+        ("HP0266", "limit `C.articulation` has no range: an articulation is never below zero")
+    );
     assert_eq!(of("limits.displacement = { max = \"far\" }").0, "HP0105");
     assert_eq!(of("limits.displacement = { max = nan }").0, "HP0109");
     assert_eq!(of("limits.displacement = 30").0, "HP0105");

@@ -173,6 +173,18 @@ fn a_measure_does_not_become_a_constant_of_expressions() {
 }
 
 #[test]
+fn a_measure_does_not_have_the_name_of_a_component_of_a_point() {
+    let text = STRUT
+        .replace("2*height", "2*tip.x")
+        .replace("height =", "\"tip.x\" =")
+        .replace("\"height", "\"tip.x");
+    let error = hardpoint_file::parse(&text, "strut.toml").unwrap_err();
+    let first = &error.list()[0];
+    let message = "a component of a point has the name of measure `tip.x`";
+    assert_eq!((first.code, first.message.as_str()), ("HP0201", message));
+}
+
+#[test]
 fn entries_that_patterns_match_keep_matching_them() {
     let text = r#"
 name = "pins"

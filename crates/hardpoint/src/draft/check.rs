@@ -430,6 +430,9 @@ impl<'a> Checker<'a> {
                     let message =
                         format!("no expression can use a measure named `{name}`: it is a constant there");
                     self.fault("HP0201", at, message).help("give it another name");
+                } else if section == Section::Measures && self.component(name).is_some() {
+                    let message = format!("a component of a point has the name of measure `{name}`");
+                    self.fault("HP0201", at, message).help("give it another name");
                 }
             }
         }

@@ -59,6 +59,11 @@ impl Checker<'_> {
                 );
                 return None;
             }
+            (_, Some(max)) if max < 0.0 && written.of == JointLimitDraft::ARTICULATION => {
+                let message = format!("limit `{name}` has no range: an articulation is never below zero");
+                self.fault("HP0266", here.key("max"), message).help("give the greatest permitted angle");
+                return None;
+            }
             _ => {}
         }
         if self.model.measures.len() < self.draft.measures.len() {

@@ -339,15 +339,10 @@ impl Checker<'_> {
 
     /// Returns the output with this name: a measure, or a component of a point.
     pub(super) fn output(&mut self, name: &str, at: DraftLocation) -> Option<OutputSource> {
-        let number = |what: &str, name: &str| self.numbers.get(what).and_then(|n| n.get(name)).copied();
-        if let Some(k) = number("measure", name) {
+        if let Some(k) = self.number_of("measure", name) {
             return Some(OutputSource::Measure(k));
         }
-        let component = name.rsplit_once('.').and_then(|(point, axis)| {
-            let axis = ["x", "y", "z"].iter().position(|a| *a == axis)?;
-            number("point", point).map(|k| OutputSource::Point(PointId(k), axis))
-        });
-        if component.is_some() {
+        if let component @ Some(_) = self.component(name) {
             return component;
         }
         let draft = self.draft;
@@ -360,6 +355,13 @@ impl Checker<'_> {
             fault.help("write a component of a point as `POINT.x`, `POINT.y` or `POINT.z`");
         }
         None
+    }
+
+    /// Returns the component of a point with this name.
+    pub(super) fn component(&self, name: &str) -> Option<OutputSource> {
+        let (point, axis) = name.rsplit_once('.')?;
+        let axis = ["x", "y", "z"].iter().position(|a| *a == axis)?;
+        self.number_of("point", point).map(|k| OutputSource::Point(PointId(k), axis))
     }
 
     /// True if a wheel or axle with this name may define a measure that could not be read.
