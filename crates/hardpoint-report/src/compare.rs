@@ -184,7 +184,7 @@ impl CompareFacts {
 
 impl Difference {
     fn shown(&self, file: usize) -> String {
-        self.values[file].map_or("not reached".into(), |x| with_unit(x, &self.unit))
+        self.values[file].map_or("no value".into(), |x| with_unit(x, &self.unit))
     }
 }
 

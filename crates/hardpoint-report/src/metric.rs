@@ -136,7 +136,7 @@ impl MetricFact {
             ("metric", &|(_, m)| m.name.clone()),
             ("case", &|(case, _)| (*case).to_owned()),
             ("definition", &|(_, m)| if definitions { m.what.clone() } else { String::new() }),
-            ("value", &|(_, m)| m.value.map_or("not reached".into(), |x| with_unit(x, &m.unit))),
+            ("value", &|(_, m)| m.value.map_or("no value".into(), |x| with_unit(x, &m.unit))),
             ("rigid", &|(_, m)| m.rigid.map_or(String::new(), |x| with_unit(x, &m.unit))),
             ("positive", &|(_, m)| if definitions { String::new() } else { m.positive.clone() }),
             ("at t", &|(_, m)| m.time.map_or(String::new(), |t| format!("{} s", number(t)))),

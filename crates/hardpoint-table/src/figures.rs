@@ -195,6 +195,8 @@ fn in_either(
 /// assert_eq!(per("deg", "mm"), "deg/mm");
 /// assert_eq!(per("deg/s", "mm"), "deg/(s*mm)");
 /// assert_eq!(per("deg/mm", "mm"), "deg/mm^2");
+/// assert_eq!(per("mm/deg^2", "deg"), "mm/deg^3");
+/// assert_eq!(per("deg/(s*mm)", "mm"), "deg/(s*mm^2)");
 /// assert_eq!(per("deg", "1"), "deg");
 /// assert_eq!(per("deg", "mm/s"), "deg/(mm/s)");
 /// assert_eq!(per("deg", "N*m"), "deg/(N*m)");
@@ -202,10 +204,22 @@ fn in_either(
 pub fn per(of: &str, by: &str) -> String {
     match (of.split_once('/'), by.contains('/')) {
         _ if by == "1" => of.into(),
-        (Some((top, below)), false) if below == by => format!("{top}/{by}^2"),
-        (Some((top, below)), _) => {
+        (Some((top, below)), of_quotient) => {
             let below = below.strip_prefix('(').and_then(|b| b.strip_suffix(')')).unwrap_or(below);
-            if by.contains('/') { format!("{top}/({below}*({by}))") } else { format!("{top}/({below}*{by})") }
+            let mut factors: Vec<String> = below.split('*').map(Into::into).collect();
+            let power = |factor: &str| match factor.strip_prefix(by)?.strip_prefix('^') {
+                Some(power) => power.parse::<u8>().ok(),
+                None => (factor == by).then_some(1),
+            };
+            match factors.iter_mut().find_map(|factor| power(factor).map(|n| (factor, n))) {
+                Some((factor, n)) => *factor = format!("{by}^{}", n + 1),
+                None if of_quotient => factors.push(format!("({by})")),
+                None => factors.push(by.into()),
+            }
+            match &factors[..] {
+                [factor] => format!("{top}/{factor}"),
+                factors => format!("{top}/({})", factors.join("*")),
+            }
         }
         (None, false) if !by.contains('*') => format!("{of}/{by}"),
         (None, _) => format!("{of}/({by})"),
