@@ -25,7 +25,6 @@ pub struct Summary {
     /// Program and version.
     pub generator: &'static str,
     /// Case of a run of all cases, each of which has a folder of its own.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub case: Option<String>,
     /// Status at the end of the run.
     pub status: RunStatus,

@@ -442,8 +442,8 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         [Some((i, frame)), Some((j, frame))]
     }
 
-    /// Returns the ends at `parent_origin` and `child_origin` in the frames of both ends; `None` if the joint has neither.
-    /// An end without one is at its frame.
+    /// Returns the ends at `parent_origin` and `child_origin` in the frames of both ends; `None` if the joint has
+    /// neither. An end without one is at its frame.
     fn at_origins(&mut self, node: Node<'a, 'i>, ends: [End; 2]) -> Option<[End; 2]> {
         let origins = ORIGINS.map(|key| child(node, key));
         origins.iter().any(Option::is_some).then(|| {

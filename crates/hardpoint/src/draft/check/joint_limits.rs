@@ -46,25 +46,10 @@ impl Checker<'_> {
                 return None;
             }
         }
-        match (min, max) {
-            (None, None) => {
-                let message = format!("limit `{name}` has no end");
-                self.fault("HP0266", here.key("name"), message).help("give `min`, `max` or both");
-                return None;
-            }
-            (Some(min), Some(max)) if min >= max => {
-                let message = format!("limit `{name}` has no range: its minimum is not below its maximum");
-                self.fault("HP0266", here.key("min"), message).help(
-                    "give the lower end as `min`, the upper one as `max`; a driver can fix a coordinate",
-                );
-                return None;
-            }
-            (_, Some(max)) if max < 0.0 && written.of == JointLimitDraft::ARTICULATION => {
-                let message = format!("limit `{name}` has no range: an articulation is never below zero");
-                self.fault("HP0266", here.key("max"), message).help("give the greatest permitted angle");
-                return None;
-            }
-            _ => {}
+        if let Some((key, why, help)) = no_range(written) {
+            let message = format!("limit `{name}` has {why}");
+            self.fault("HP0266", here.key(key), message).help(help);
+            return None;
         }
         if self.model.measures.len() < self.draft.measures.len() {
             // A measure is faulty, and has its own error.
@@ -80,5 +65,23 @@ impl Checker<'_> {
         };
         let coordinate = kind.coordinate(&written.of).map(|(k, _)| k);
         Some(JointLimit { name, joint, coordinate, measure, min, max, stop })
+    }
+}
+
+/// Key, reason and remedy of a limit that no position keeps, or every one.
+fn no_range(limit: &JointLimitDraft) -> Option<(&'static str, &'static str, &'static str)> {
+    match (limit.min, limit.max) {
+        (None, None) => Some(("name", "no end", "give `min`, `max` or both")),
+        (Some(min), Some(max)) if min >= max => Some((
+            "min",
+            "no range: its minimum is not below its maximum",
+            "give the lower end as `min`, the upper one as `max`; a driver can fix a coordinate",
+        )),
+        (_, Some(max)) if max < 0.0 && limit.of == JointLimitDraft::ARTICULATION => Some((
+            "max",
+            "no range: an articulation is never below zero",
+            "give the greatest permitted angle",
+        )),
+        (_, Some(_)) | (Some(_), None) => None,
     }
 }
