@@ -167,15 +167,15 @@ fn rates_that_jump_where_a_rod_is_parallel_to_a_face_are_not_compared_with_diffe
     }
 }
 
-/// A rod that begins its turn in a solid, along a face of it or nearly so, or across two faces at a corner: the solid is
-/// moved away as far as necessary.
+/// A rod that begins its turn in a solid, along a face of it or nearly so, or through two faces at an edge of it: the
+/// solid is moved away as far as necessary.
 #[test]
 fn an_optimisation_separates_a_rod_from_a_solid_that_it_begins_in() {
     let block = "box = [10, 30, 10], frame = { position = \"S\" }";
     for (end, solid, from, to, exact) in [
         (0.0, block, -13.0, -21.0, 1e-6),
         (0.001, block, -13.0, -21.0 + 0.001 * 45.0 / 60.0, 1e-6),
-        // The corner at (35, y + 6) is 6 mm from the rod, whose slope is 5/12.
+        // The edge at (35, y + 6) is 6 mm from the rod, whose slope is 5/12.
         (25.0, "box = [30, 12, 20], frame = { position = \"S\" }", 12.0, 35.0 * 5.0 / 12.0 - 6.5 - 6.0, 1e-5),
         (0.0, "cylinder = [\"S\", [50, -30, 5]], radius = 6", 2.0, 2.0 - 8.1302, 1e-4),
     ] {

@@ -27,7 +27,7 @@ pub(crate) struct Nearest {
     /// True if other features are as deep: those that are deepest change with any motion, and the distance has no
     /// derivatives.
     pub is_tied: bool,
-    /// Where the deepest point of a segment is between two features of the other core that are as near: the second one.
+    /// The second feature of the other core, if the deepest point of a segment is between two that are as near.
     pub between: Option<Feature>,
 }
 
