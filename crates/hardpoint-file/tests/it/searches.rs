@@ -143,6 +143,23 @@ fn the_strut_gets_its_toe_curve_and_steers_no_worse() {
     }
 }
 
+/// Maximum numbers of designs for an optimum of a wishbone with ten variables under two limits: of the sum of two
+/// norms, and of one that nearly vanishes. Sequential programming takes 18 and 94.
+const FEW: [usize; 2] = [12, 50];
+
+#[test]
+fn an_optimum_under_limits_takes_few_designs() {
+    let file = model("studies/wishbone_trade_off.toml");
+    let both = asked(&file);
+    let camber = OptimizationSettings { goals: both.goals[1..].to_vec(), ..both.clone() };
+    for (settings, few) in [both, camber].iter().zip(FEW) {
+        let found = searched(&file, settings);
+        let search = best(&found);
+        assert_eq!(search.status, Status::Optimal);
+        assert!(search.cost.designs < few, "{} designs", search.cost.designs);
+    }
+}
+
 /// Maximum deviation from the published toe curve, 0.77 deg to either side: root mean square, rad.
 const FOLLOWED: f64 = 0.003 * std::f64::consts::PI / 180.0;
 

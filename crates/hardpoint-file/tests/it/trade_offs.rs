@@ -147,6 +147,18 @@ fn a_front_of_fifteen_points_takes_few_designs() {
     assert!(found.cost.designs < FEW, "{} designs", found.cost.designs);
 }
 
+/// Designs for the optima of two goals with one iteration each: a step, a design that is tried, and one search.
+const ONE_ITERATION: usize = 20;
+
+#[test]
+fn the_optima_of_single_goals_take_no_more_than_the_iterations() {
+    let text = include_str!("../../../../models/studies/wishbone_trade_off.toml");
+    let mut model = parse(text, "wishbone_trade_off.toml").unwrap_or_else(|e| panic!("{e}"));
+    model.model.optimization.as_mut().expect("the model has goals").iterations = 1;
+    let found = traded(&model, Some(3));
+    assert!(found.anchor_designs < ONE_ITERATION, "{} designs", found.anchor_designs);
+}
+
 #[test]
 fn a_front_that_bulges_towards_worse_designs_is_found_where_weighted_sums_find_its_ends_only() {
     let limits = r#"limits.away = { between = ["O", "P"], min = 50 }

@@ -5,6 +5,7 @@ mod polish;
 mod saddle;
 
 use super::assessment::{AS_GOOD, LIMIT_KEPT, assess, limit_scales};
+use super::local::LocalSteps;
 use super::optimality::Optimality;
 use super::problem::{Point, Problem};
 use super::result::{Iteration, SearchResult, Status};
@@ -24,7 +25,7 @@ const NO_LESS: f64 = 1e-14;
 const RESTING: f64 = 1e-13;
 /// Objectives with a relative difference below this are equal to round-off; the design with the smaller optimality
 /// residual is then the better one.
-const THE_SAME: f64 = 1e-12;
+pub(super) const THE_SAME: f64 = 1e-12;
 /// Change of a limit over the bounds of a variable, as a fraction of its scale, that is still round-off.
 const LIMIT_ROUND_OFF: f64 = 1e-10;
 /// A run that reduces the optimality residual to this fraction is progress, whatever its effect on the objective.
@@ -53,6 +54,8 @@ pub(super) struct Descent<'p> {
     ran_out: bool,
     /// True if Gauss-Newton steps were idle.
     is_curved: bool,
+    /// True if local models do not describe the problem.
+    is_unfit: bool,
     /// Number of iterations at which a search ends that only confirms its result.
     confirms_until: Option<usize>,
     /// True if no goal depends on any variable.
@@ -72,6 +75,7 @@ impl<'p> Descent<'p> {
             at: start.to_vec(),
             ran_out: false,
             is_curved: false,
+            is_unfit: false,
             confirms_until: None,
             has_no_effect: has_no_effect(problem, memory, &point),
             effects: vec![0.0; start.len()],
@@ -186,13 +190,19 @@ impl<'p> Descent<'p> {
     }
 
     /// Solver for this kind of goals and limits, started at the current point. Least squares approach bounds slowly
-    /// from within; sequential programming finishes such searches.
+    /// from within; local models finish such searches, or sequential programming where these do not describe the
+    /// problem.
     fn solver(&self, squares: bool) -> Option<Box<dyn Solver + 'p>> {
+        let (memory, at, here, scales) = (self.memory, &self.at, &self.here, &self.scales);
         if squares {
-            Some(Box::new(least_squares(self.memory, &self.at, &self.here)))
-        } else {
-            let found = ScaledSequential::new(self.memory, &self.at, &self.here, &self.scales);
-            found.map(|s| Box::new(s) as Box<dyn Solver + 'p>)
+            return Some(Box::new(least_squares(memory, at, here)));
+        }
+        let local = if self.is_unfit { None } else { LocalSteps::new(memory, at, here, scales) };
+        match local {
+            Some(local) => Some(Box::new(local)),
+            None => {
+                ScaledSequential::new(memory, at, here, scales).map(|s| Box::new(s) as Box<dyn Solver + 'p>)
+            }
         }
     }
 
@@ -259,6 +269,7 @@ impl<'p> Descent<'p> {
         let squares = run.is_multiple_of(2) && self.here.is_squares();
         let Some(mut solver) = self.solver(squares) else { return };
         let hands_over = self.here.has_only_squares();
+        let begin = (self.at.clone(), self.here.clone(), self.best.clone(), search.work.clone());
         let (mut patience, mut since) = (PATIENCE, (search.iterations.len(), self.best.objective()));
         loop {
             if hands_over && search.iterations.len() >= since.0 + patience {
@@ -267,10 +278,9 @@ impl<'p> Descent<'p> {
                     self.polish(search, tell);
                     if self.best.objective() <= HALVED * slow {
                         self.return_to_best();
-                        match self.solver(squares) {
-                            Some(next) => solver = next,
-                            None => return,
-                        }
+                        self.is_unfit = true;
+                        let Some(next) = self.solver(squares) else { return };
+                        solver = next;
                     } else {
                         (self.at, self.here) = state;
                         patience *= 2;
@@ -287,7 +297,17 @@ impl<'p> Descent<'p> {
             {
                 return;
             }
-            let Some(at) = solver.step() else { return };
+            let Some(at) = solver.step() else {
+                if !solver.is_unfit() || self.memory.interrupted() {
+                    return;
+                }
+                self.is_unfit = true;
+                (self.at, self.here, self.best, search.work) = begin.clone();
+                let Some(next) = self.solver(squares) else { return };
+                solver = next;
+                since = (search.iterations.len(), self.best.objective());
+                continue;
+            };
             if at == self.at {
                 continue;
             }

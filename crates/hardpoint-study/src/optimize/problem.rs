@@ -29,8 +29,6 @@ pub(crate) struct Problem<'m> {
     pub limits: Vec<(usize, Limited)>,
     /// Uses of the metrics of each motion.
     pub uses: Vec<Vec<MetricUse>>,
-    /// True if points have the residuals of their limits.
-    pub has_limit_residuals: bool,
 }
 
 /// A metric in one motion.
@@ -315,7 +313,6 @@ impl<'m> Problem<'m> {
             goals,
             limits,
             uses,
-            has_limit_residuals: false,
         }
     }
 
@@ -514,7 +511,7 @@ impl<'m> Problem<'m> {
             push(value - most, d, true, true);
             return;
         }
-        if let Some(entry) = entry.filter(|_| self.has_limit_residuals) {
+        if let Some(entry) = entry {
             let (model, solution) = (self.motions.model(entry.motion), &found.solutions[entry.motion]);
             let residuals = misfits(model, solution, &model.metrics[entry.metric]);
             point.limit_residuals.extend(residuals.map(|parts| (place, self.rows(&parts, 1.0))));

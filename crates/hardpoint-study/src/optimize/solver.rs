@@ -63,6 +63,9 @@ impl<'p> Memory<'p> {
 pub(super) trait Solver {
     /// Performs one iteration and returns the new point, as fractions of the bounds; `None` at the end.
     fn step(&mut self) -> Option<Vec<f64>>;
+
+    /// True if the steps so far do not suit the problem: another solver begins where this one did.
+    fn is_unfit(&self) -> bool;
 }
 
 /// Solver for squared goals without limits other than bounds.
@@ -103,6 +106,10 @@ fn folded_misfits(memory: &Memory<'_>, spans: &[f64], scale: f64, x: &[f64]) -> 
 impl Solver for LeastSquares<'_> {
     fn step(&mut self) -> Option<Vec<f64>> {
         self.step()
+    }
+
+    fn is_unfit(&self) -> bool {
+        false
     }
 }
 
@@ -371,6 +378,10 @@ impl Solver for ScaledSequential<'_> {
         let n = self.x0.len();
         let along = |i: usize| (0..n).map(|j| self.t[j][i] * y[j]).sum::<f64>();
         Some((0..n).map(|i| (self.x0[i] + along(i)).clamp(0.0, 1.0)).collect())
+    }
+
+    fn is_unfit(&self) -> bool {
+        false
     }
 }
 

@@ -1,9 +1,10 @@
 //! Points of a front, and where to look for the next.
 
-use super::functions::{Criticality, Scale, State};
 use super::result::{FrontPoint, ON_FRONT, TradeOff};
-use super::scalarization::{Curvatures, Reference, SHARP, SHARP_BETWEEN, Scalarization, Solved};
-use crate::optimize::{LIMIT_KEPT, Memory, assess, limit_scales};
+use crate::optimize::{
+    Criticality, Curvatures, LIMIT_KEPT, Memory, Reference, SHARP, SHARP_BETWEEN, STEPS, Scalarization,
+    Scale, Solved, State, assess, limit_scales,
+};
 
 /// Range of a goal, relative to its change from the nominal design, below which it does not conflict with the others.
 const NO_CONFLICT: f64 = 1e-7;
@@ -540,17 +541,16 @@ impl<'p> Front<'p> {
         (solved.unwrap_or(start), is_found)
     }
 
-    fn scalarization<'s>(&'s self, reference: Reference, near: f64, sharp: f64) -> Scalarization<'s>
-    where
-        'p: 's,
-    {
+    fn scalarization(&self, reference: Reference, near: f64, sharp: f64) -> Scalarization<'p> {
         Scalarization {
             memory: self.memory,
-            limit_scales: &self.limit_scales,
-            scale: &self.scale,
+            limit_scales: self.limit_scales.clone(),
+            scale: self.scale.clone(),
+            state: State::new,
             reference,
             near,
             sharp,
+            steps: STEPS,
         }
     }
 

@@ -5,12 +5,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use hardpoint::model::{Model, OptimizationSettings};
 
 use super::front::{Anchor, End, Front};
-use super::functions::{Scale, State};
 use super::request::Request;
 use super::result::{Outcome, TradeOff};
-use super::scalarization::{Curvatures, Reference, SHARP, Scalarization, Solved};
 use crate::evaluation::{Motions, StudyCost};
-use crate::optimize::{self, BINDS, MET, Memory, Problem, Status, assess, failed_design, limit_scales};
+use crate::optimize::{
+    self, BINDS, Curvatures, MET, Memory, Problem, Reference, SHARP, STEPS, Scalarization, Scale, Solved,
+    State, Status, assess, failed_design, limit_scales,
+};
 use crate::progress::{Control, Progress, Step};
 
 /// Change, as a fraction of the bounds, below which a search has not moved a variable.
@@ -22,8 +23,7 @@ const UNMOVED: f64 = 1e-9;
 pub fn trade_off(model: &Model, motions: &Motions<'_>, request: &Request, control: Control<'_>) -> TradeOff {
     let Request { settings, points } = request;
     let Control { progress, more, threads } = control;
-    let mut problem = Problem::new(model, motions, settings);
-    problem.has_limit_residuals = true;
+    let problem = Problem::new(model, motions, settings);
     let ended = AtomicBool::new(false);
     let go_on = || !ended.load(Ordering::Relaxed) && more();
     let memory = Memory::new(&problem, &go_on);
@@ -145,15 +145,25 @@ fn nearest_optimum(
     let scale = Scale { zero: nominal.goals.clone(), range: steepest, steepest: vec![1.0; count] };
     let mut reference: Reference = vec![None; count];
     reference[goal] = Some([0.0, 1.0]);
-    let (limit_scales, scale) = (&limit_scales[..], &scale);
-    let scalarization = Scalarization { memory, limit_scales, scale, reference, near: 1.0, sharp: SHARP };
     let mut weights = vec![0.0; count];
     weights[goal] = 1.0;
-    let curvatures = Curvatures::of_weights(nominal, scale, &weights, known.clone());
+    let curvatures = Curvatures::of_weights(nominal, &scale, &weights, known.clone());
+    let is_met = |state: &State| state.squares[goal] && state.goals[goal] <= MET * scale.range[goal];
+    let steps = STEPS.min(memory.problem.settings.iterations);
+    let scalarization = Scalarization {
+        memory,
+        state: State::new,
+        limit_scales,
+        scale: scale.clone(),
+        reference,
+        near: 1.0,
+        sharp: SHARP,
+        steps,
+    };
     let Solved { state, criticality, curvatures } = scalarization.solve(nominal.clone(), curvatures)?;
     *known = curvatures;
     let has_moved = |(x, from): (&f64, &f64)| (x - from).abs() > UNMOVED || *x < BINDS || *x > 1.0 - BINDS;
-    let is_met = state.squares[goal] && state.goals[goal] <= MET * scale.range[goal];
-    let is_found = criticality.residual <= SHARP && !is_met && state.x.iter().zip(&nominal.x).all(has_moved);
+    let is_found =
+        criticality.residual <= SHARP && !is_met(&state) && state.x.iter().zip(&nominal.x).all(has_moved);
     is_found.then_some(state.x)
 }

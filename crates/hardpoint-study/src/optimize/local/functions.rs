@@ -7,7 +7,8 @@
 
 use std::rc::Rc;
 
-use crate::optimize::{BINDS, Extremum, MET, Point, Problem, Rows};
+use crate::optimize::optimality::BINDS;
+use crate::optimize::problem::{Extremum, MET, Point, Problem, Rows};
 use hardpoint::linalg::folded_rows;
 use hardpoint_search::quadratic::non_negative;
 use hardpoint_search::{dot, norm};
@@ -16,11 +17,11 @@ use hardpoint_search::{dot, norm};
 const HEAVY: f64 = 10.0;
 
 /// A matrix of second derivatives.
-pub(super) type Matrix = Vec<Vec<f64>>;
+pub(crate) type Matrix = Vec<Vec<f64>>;
 
 /// Part that a function has in goals or limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Role {
+pub(crate) enum Role {
     /// Smooth part of a goal.
     Goal(usize),
     /// Candidate for the maximum of a group.
@@ -35,7 +36,7 @@ pub(super) enum Role {
 
 /// Differentiable function of the design.
 #[derive(Clone, Debug)]
-pub(super) struct Function {
+pub(crate) struct Function {
     pub role: Role,
     /// Index of the functions that share their second derivatives.
     pub block: usize,
@@ -43,21 +44,31 @@ pub(super) struct Function {
     pub value: f64,
     /// Gradient by fractions of the bounds.
     pub d: Vec<f64>,
-    /// Residuals of a function that is their norm, less a constant.
+    /// Residuals of a function that depends on them.
     pub residuals: Option<Residuals>,
 }
 
-/// Residuals whose norm is a function, folded into one row for each variable and one more.
+/// Dependence of a function on its residuals.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Form {
+    /// Their norm, less a constant.
+    Norm,
+    /// The sum of their squares, and a remainder.
+    Square,
+}
+
+/// Residuals of a function, folded into one row for each variable and one more.
 #[derive(Clone, Debug)]
-pub(super) struct Residuals {
+pub(crate) struct Residuals {
     pub values: Vec<f64>,
     /// Derivatives by fractions of the bounds, one row for each residual.
     pub d: Vec<Vec<f64>>,
+    pub form: Form,
 }
 
 /// A design with its functions.
 #[derive(Clone, Debug)]
-pub(super) struct State {
+pub(crate) struct State {
     /// Searched variables as fractions of their bounds.
     pub x: Vec<f64>,
     pub point: Rc<Point>,
@@ -78,7 +89,7 @@ pub(super) struct State {
 
 /// Distance from the first-order condition of a front.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Criticality {
+pub(crate) struct Criticality {
     /// Largest entry of the unbalanced gradient of the weighted goals, relative to their steepest gradients.
     pub residual: f64,
     /// Weights of the goals as fractions of their ranges; their sum is 1.
@@ -87,7 +98,7 @@ pub(super) struct Criticality {
 
 /// Ranges of the goals over a front.
 #[derive(Clone, Debug)]
-pub(super) struct Scale {
+pub(crate) struct Scale {
     /// Minimum of each goal, SI.
     pub zero: Vec<f64>,
     /// Maximum minus minimum, SI.
@@ -97,39 +108,39 @@ pub(super) struct Scale {
 }
 
 impl State {
+    /// Each goal on its own.
     pub fn new(problem: &Problem<'_>, limit_scales: &[f64], x: Vec<f64>, point: Point) -> Self {
+        let point = Rc::new(point);
         let count = problem.settings.goals.len();
-        let mut found = FunctionList {
-            problem,
-            point: &point,
-            spans: problem.spans(),
-            functions: Vec::new(),
-            squares: vec![false; count],
-            groups: Vec::new(),
-            ranges: Vec::new(),
-            goals: vec![0.0; count],
-        };
+        let mut found = FunctionList::new(problem, &point, count);
         for goal in 0..count {
             found.add_goal(goal);
-            found.add_peaks(goal);
+            let shares = problem.goals.iter().zip(&point.shares).filter(|(g, _)| g.of == goal);
+            let per_unit = 1.0 / problem.settings.goals[goal].weight;
+            found.add_peaks(goal, shares.flat_map(|(_, s)| s.peaks.clone()), per_unit);
         }
+        Self::with_limits(found, limit_scales, x, point.clone())
+    }
+
+    /// The weighted sum of all goals as the only one, or its root if all of them are squares. Distances from a target
+    /// that have corners are not supported.
+    pub fn of_sum(problem: &Problem<'_>, limit_scales: &[f64], x: Vec<f64>, point: Point) -> Self {
+        let point = Rc::new(point);
+        let mut found = FunctionList::new(problem, &point, 1);
+        found.add_sum();
+        found.add_peaks(0, 0..point.peaks.len(), 1.0);
+        Self::with_limits(found, limit_scales, x, point.clone())
+    }
+
+    fn with_limits(mut found: FunctionList<'_>, limit_scales: &[f64], x: Vec<f64>, point: Rc<Point>) -> Self {
+        let count = found.goals.len();
         let limits = count + found.groups.len();
         found.add_limits(limits, limit_scales);
-        let ends = limits + 2 * problem.limits.len();
+        let ends = limits + 2 * found.problem.limits.len();
         found.add_ranges(ends, limit_scales);
         let FunctionList { functions, squares, groups, ranges, goals, .. } = found;
         let blocks = ends + 2 * ranges.len();
-        Self {
-            x,
-            point: Rc::new(point),
-            functions,
-            second: vec![Vec::new(); blocks],
-            squares,
-            groups,
-            ranges,
-            blocks,
-            goals,
-        }
+        Self { x, point, functions, second: vec![Vec::new(); blocks], squares, groups, ranges, blocks, goals }
     }
 
     /// Values and gradients of the functions with a role.
@@ -281,7 +292,33 @@ struct FunctionList<'p> {
     goals: Vec<f64>,
 }
 
-impl FunctionList<'_> {
+impl<'p> FunctionList<'p> {
+    fn new(problem: &'p Problem<'p>, point: &'p Point, count: usize) -> Self {
+        let (functions, groups, ranges) = (Vec::new(), Vec::new(), Vec::new());
+        let (squares, goals) = (vec![false; count], vec![0.0; count]);
+        Self { problem, point, spans: problem.spans(), functions, squares, groups, ranges, goals }
+    }
+
+    /// Lists the smooth part of the weighted sum of all goals.
+    fn add_sum(&mut self) {
+        let Self { point, spans, functions, squares, goals, .. } = self;
+        let Rows { values, d } = &point.misfits;
+        let rows = values.iter().zip(d).map(|(r, d)| (*r, by_parts(d, 1.0, spans)));
+        let residuals = Residuals::folded(rows.collect(), spans.len());
+        squares[0] = point.has_only_squares();
+        // The norm of a single residual has a corner where it vanishes.
+        let f = if squares[0] && values.len() > 1 {
+            Function::of_norm(Role::Goal(0), 0, residuals.norm(), residuals)
+        } else {
+            let value = values.iter().map(|r| r * r).sum::<f64>() + point.plain.values.iter().sum::<f64>();
+            let d = by_parts(&point.smooth().gradient(spans.len()), 1.0, spans);
+            let residuals = (!values.is_empty()).then_some(Residuals { form: Form::Square, ..residuals });
+            Function { role: Role::Goal(0), block: 0, value, d, residuals }
+        };
+        goals[0] = f.value;
+        functions.push(f);
+    }
+
     /// Lists the functions of a goal, without its peaks.
     fn add_goal(&mut self, goal: usize) {
         let Self { problem, point, spans, functions, squares, groups, goals, .. } = self;
@@ -334,13 +371,11 @@ impl FunctionList<'_> {
         }
     }
 
-    /// Lists the peaks of a goal.
-    fn add_peaks(&mut self, goal: usize) {
-        let Self { problem, point, spans, functions, groups, goals, .. } = self;
+    /// Lists peaks of a goal, times a factor.
+    fn add_peaks(&mut self, goal: usize, of_goal: impl Iterator<Item = usize>, per_unit: f64) {
+        let Self { point, spans, functions, groups, goals, .. } = self;
         let count = goals.len();
-        let per_unit = 1.0 / problem.settings.goals[goal].weight;
-        let shares = problem.goals.iter().zip(&point.shares).filter(|(g, _)| g.of == goal);
-        for k in shares.flat_map(|(_, s)| s.peaks.clone()) {
+        for k in of_goal {
             let peaks = &point.peaks[k];
             let group = groups.len();
             for (value, d) in peaks.values.iter().zip(&peaks.d) {
@@ -410,6 +445,7 @@ impl Residuals {
         Self {
             values: folded.iter().map(|row| row[n]).collect(),
             d: folded.into_iter().map(|row| row[..n].to_vec()).collect(),
+            form: Form::Norm,
         }
     }
 
@@ -422,6 +458,12 @@ impl Residuals {
         let n = self.d.first().map_or(0, Vec::len);
         let column = |v: usize| self.d.iter().map(|d| d[v] * d[v]).sum::<f64>();
         (MET * (0..n).map(column).fold(0.0, f64::max).sqrt()).max(f64::MIN_POSITIVE)
+    }
+
+    /// The residuals after a step, to first order.
+    pub fn moved(&self, p: &[f64]) -> Self {
+        let values = self.values.iter().zip(&self.d).map(|(r, d)| r + dot(d, p)).collect();
+        Self { values, ..self.clone() }
     }
 
     /// `J^T r`

@@ -10,19 +10,22 @@
 //! the rest of each function is a symmetric rank-one secant, which neighbouring points of the front inherit. Its
 //! minimum is found by sequential quadratic programming.
 
-use super::functions::{Criticality, Matrix, Role, Scale, State};
+use super::functions::{Criticality, Form, Matrix, Residuals, Role, Scale, State};
 use super::local_model::LocalModel;
-use crate::optimize::{BINDS, LIMIT_KEPT, Memory, Point};
+use crate::optimize::assessment::LIMIT_KEPT;
+use crate::optimize::optimality::BINDS;
+use crate::optimize::problem::{Point, Problem};
+use crate::optimize::solver::Memory;
 use hardpoint::linalg::semidefinite;
 use hardpoint_search::quadratic::{Linear, Minimum, minimize};
 use hardpoint_search::{Singular, dot, norm, singular};
 
 /// Residual at which an end of a front is found: a tenth of what is promised, since the ranges of the goals change ...
-pub(super) const SHARP: f64 = 1e-7;
+pub(crate) const SHARP: f64 = 1e-7;
 /// ... and that of the points between them.
-pub(super) const SHARP_BETWEEN: f64 = 5e-7;
+pub(crate) const SHARP_BETWEEN: f64 = 5e-7;
 /// Maximum number of steps to a point.
-const STEPS: usize = 40;
+pub(crate) const STEPS: usize = 40;
 /// Radius of the first trust region, as a fraction of the bounds.
 const RADIUS: f64 = 0.2;
 /// Smallest trust region.
@@ -61,11 +64,11 @@ const SECANT: f64 = 1e-6;
 
 /// Reference point and direction of the goals as fractions of their ranges; `None` for a goal that is not traded. A
 /// goal with direction 0 is a limit.
-pub(super) type Reference = Vec<Option<[f64; 2]>>;
+pub(crate) type Reference = Vec<Option<[f64; 2]>>;
 
 /// Second derivatives of all functions beyond those of linear residuals, and the weights of the goals.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Curvatures {
+pub(crate) struct Curvatures {
     /// Secant of each block of functions.
     secants: Vec<Matrix>,
     /// Multiplier of each function.
@@ -74,22 +77,42 @@ pub(super) struct Curvatures {
 
 /// Design on the front.
 #[derive(Clone, Debug)]
-pub(super) struct Solved {
+pub(crate) struct Solved {
     pub state: State,
     pub criticality: Criticality,
     pub curvatures: Curvatures,
 }
 
+/// Goals and limits of a design as functions, given the scales of limits and the design as fractions of the bounds.
+type StateOf = fn(&Problem<'_>, &[f64], Vec<f64>, Point) -> State;
+
 /// Evaluates designs of one front.
-pub(super) struct Scalarization<'p> {
+pub(crate) struct Scalarization<'p> {
     pub memory: &'p Memory<'p>,
-    pub limit_scales: &'p [f64],
-    pub scale: &'p Scale,
+    pub state: StateOf,
+    pub limit_scales: Vec<f64>,
+    pub scale: Scale,
     pub reference: Reference,
     /// Distance between the goals and the line of the reference that is near enough.
     pub near: f64,
     /// Residual that is small enough.
     pub sharp: f64,
+    /// Maximum number of steps.
+    pub steps: usize,
+}
+
+/// Progress of a search for the minimum of a scalarization.
+pub(crate) struct Descent {
+    pub here: State,
+    pub criticality: Criticality,
+    curvatures: Curvatures,
+    radius: f64,
+    penalty: f64,
+    /// Values of the objective at former designs, with this penalty.
+    recent: Vec<f64>,
+    /// Predicted and achieved decrease of the objective by the last design, in units of the scale; an infinite loss
+    /// where it could not be evaluated.
+    pub outcome: Option<[f64; 2]>,
 }
 
 /// Minimum of the model of all functions.
@@ -114,7 +137,7 @@ impl Scalarization<'_> {
     /// Evaluates a design; `None` if it cannot be evaluated.
     pub fn evaluate(&self, x: &[f64]) -> Option<State> {
         let point: Point = self.memory.at(x, |found| found.as_ref().ok().cloned())?;
-        Some(State::new(self.memory.problem, self.limit_scales, x.to_vec(), point))
+        Some((self.state)(self.memory.problem, &self.limit_scales, x.to_vec(), point))
     }
 
     /// Indices of the traded goals, and of those that are limits.
@@ -129,92 +152,103 @@ impl Scalarization<'_> {
     /// Distance of a design from the first-order condition. A goal that is a limit counts where it is active.
     fn criticality(&self, state: &State) -> Criticality {
         let [traded, mut fixed] = self.traded();
-        let scaled = state.scaled(self.scale);
+        let scaled = state.scaled(&self.scale);
         fixed.retain(|goal| self.reference[*goal].is_some_and(|[a, _]| scaled[*goal] > a - BINDS));
-        state.criticality(self.scale, &traded, &fixed)
+        state.criticality(&self.scale, &traded, &fixed)
     }
 
     /// Position `t` of each goal along the direction.
     fn positions(&self, state: &State) -> Vec<f64> {
-        let goals = state.scaled(self.scale).into_iter().zip(&self.reference);
+        let goals = state.scaled(&self.scale).into_iter().zip(&self.reference);
         goals.filter_map(|(f, r)| r.filter(|[_, d]| *d > 0.0).map(|[a, d]| (f - a) / d)).collect()
     }
 
     /// Value of t and the largest violation of limits at a design.
     fn merit(&self, state: &State) -> (f64, f64) {
         let greatest = |all: Vec<f64>| all.into_iter().fold(f64::NEG_INFINITY, f64::max);
-        let fixed = state.scaled(self.scale).into_iter().zip(&self.reference);
+        let fixed = state.scaled(&self.scale).into_iter().zip(&self.reference);
         let fixed = fixed.filter_map(|(f, r)| r.filter(|[_, d]| *d == 0.0).map(|[a, _]| f - a));
         (greatest(self.positions(state)), greatest(fixed.collect()).max(state.violation()))
     }
 
     /// Searches from a design that can be evaluated. Returns the design with the smallest residual.
-    pub fn solve(&self, start: State, mut curvatures: Curvatures) -> Option<Solved> {
-        let criticality = self.criticality(&start);
-        curvatures.fit(&start);
-        let (mut here, mut critical) = (start, criticality);
-        let (mut radius, mut penalty) = (RADIUS, PENALTY);
+    pub fn solve(&self, start: State, curvatures: Curvatures) -> Option<Solved> {
+        let mut descent = self.descent(start, curvatures);
         let mut best: Option<(State, Criticality)> = None;
-        let mut recent: Vec<f64> = Vec::new();
-        for _ in 0..STEPS {
-            let (t, violation) = self.merit(&here);
-            let positions = self.positions(&here);
-            let apart = positions.iter().map(|p| t - p).fold(0.0, f64::max);
+        for _ in 0..self.steps {
+            let Descent { here, criticality, .. } = &descent;
+            let (t, violation) = self.merit(here);
+            let apart = self.positions(here).iter().map(|p| t - p).fold(0.0, f64::max);
             let is_kept = violation <= LIMIT_KEPT;
-            if is_kept && best.as_ref().is_none_or(|(_, c)| critical.residual < c.residual) {
-                best = Some((here.clone(), critical.clone()));
+            if is_kept && best.as_ref().is_none_or(|(_, c)| criticality.residual < c.residual) {
+                best = Some((here.clone(), criticality.clone()));
             }
-            let is_sharp = is_kept && critical.residual <= self.sharp;
+            let is_sharp = is_kept && criticality.residual <= self.sharp;
             if is_sharp && apart <= self.near {
                 break;
             }
             if self.memory.interrupted() {
                 return None;
             }
-            let Some(minimum) = self.minimize_model(&here, &mut curvatures, radius, penalty) else {
-                radius *= SHRINK;
-                if radius < LEAST_RADIUS {
-                    break;
-                }
-                continue;
-            };
-            if minimum.penalty > penalty {
-                penalty = minimum.penalty;
-                recent.clear();
-            }
-            let x = minimum.x;
-            let length = here.x.iter().zip(&x).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
-            let is_near = length <= self.near.min(RADIUS) * SHARP.sqrt();
-            if is_sharp && is_near || length < LEAST_RADIUS {
-                break;
-            }
-            let Some(next) = self.evaluate(&x) else {
-                radius = SHRINK * length;
-                continue;
-            };
-            curvatures.learn(&here, &next);
-            let critical_next = self.criticality(&next);
-            let value = |state: &State| self.value(state, penalty);
-            let (now, then) = (value(&here), value(&next));
-            let gain = now - minimum.value;
-            recent.push(now);
-            let from = recent.iter().rev().take(MEMORY).fold(f64::NEG_INFINITY, |a, b| a.max(*b));
-            let is_nearer = critical_next.residual <= NEARER * critical.residual
-                && self.merit(&next).1 <= violation.max(LIMIT_KEPT);
-            let is_down = then <= from - GAIN * gain;
-            if is_down || is_nearer {
-                if then <= now - 0.5 * gain && length >= 0.9 * radius {
-                    radius = (2.0 * radius).min(1.0);
-                }
-                (here, critical) = (next, critical_next);
-            } else {
-                radius = SHRINK * length;
-            }
-            if radius < LEAST_RADIUS {
+            let shortest = if is_sharp { self.near.min(RADIUS) * SHARP.sqrt() } else { 0.0 };
+            if !self.advance(&mut descent, shortest) {
                 break;
             }
         }
-        best.map(|(state, criticality)| Solved { state, criticality, curvatures })
+        best.map(|(state, criticality)| Solved { state, criticality, curvatures: descent.curvatures })
+    }
+
+    /// Search from a design that can be evaluated, before its first step.
+    pub fn descent(&self, here: State, mut curvatures: Curvatures) -> Descent {
+        curvatures.fit(&here);
+        let (radius, penalty, recent) = (RADIUS, PENALTY, Vec::new());
+        let criticality = self.criticality(&here);
+        Descent { here, criticality, curvatures, radius, penalty, recent, outcome: None }
+    }
+
+    /// Tries one step, which is made if it is good, or else shortens the next. Returns false at the end: the step is
+    /// not longer than `shortest`.
+    pub fn advance(&self, descent: &mut Descent, shortest: f64) -> bool {
+        let Descent { here, criticality, curvatures, radius, penalty, recent, outcome } = descent;
+        *outcome = None;
+        let Some(minimum) = self.minimize_model(here, curvatures, *radius, *penalty) else {
+            *radius *= SHRINK;
+            return *radius >= LEAST_RADIUS;
+        };
+        if minimum.penalty > *penalty {
+            *penalty = minimum.penalty;
+            recent.clear();
+        }
+        let x = minimum.x;
+        let length = here.x.iter().zip(&x).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+        if length <= shortest || length < LEAST_RADIUS {
+            return false;
+        }
+        let now = self.value(here, *penalty);
+        let gain = now - minimum.value;
+        let Some(next) = self.evaluate(&x) else {
+            *outcome = Some([gain, f64::NEG_INFINITY]);
+            *radius = SHRINK * length;
+            return true;
+        };
+        curvatures.learn(here, &next);
+        let criticality_next = self.criticality(&next);
+        let then = self.value(&next, *penalty);
+        *outcome = Some([gain, now - then]);
+        recent.push(now);
+        let from = recent.iter().rev().take(MEMORY).fold(f64::NEG_INFINITY, |a, b| a.max(*b));
+        let is_nearer = criticality_next.residual <= NEARER * criticality.residual
+            && self.merit(&next).1 <= self.merit(here).1.max(LIMIT_KEPT);
+        let is_down = then <= from - GAIN * gain;
+        if is_down || is_nearer {
+            if then <= now - 0.5 * gain && length >= 0.9 * *radius {
+                *radius = (2.0 * *radius).min(1.0);
+            }
+            (*here, *criticality) = (next, criticality_next);
+        } else {
+            *radius = SHRINK * length;
+        }
+        *radius >= LEAST_RADIUS
     }
 
     /// Objective t with the penalty on the violation of limits.
@@ -354,7 +388,7 @@ impl Scalarization<'_> {
             rows.push(Linear { a, b });
             owners.push(owner);
         };
-        let values = state.scaled(self.scale);
+        let values = state.scaled(&self.scale);
         for (goal, reference) in self.reference.iter().enumerate() {
             let Some([a, direction]) = *reference else { continue };
             let per_range = 1.0 / self.scale.range[goal];
@@ -525,8 +559,13 @@ impl Curvatures {
                     match &f.residuals {
                         Some(residuals) => {
                             let linear = residuals.products();
-                            for ((y, d), row) in y.iter_mut().zip(residuals.slope()).zip(&linear) {
-                                *y += sign * d - 0.5 * dot(row, &s);
+                            // The gradient of half the square of a norm.
+                            let (d, factor) = match residuals.form {
+                                Form::Norm => (&residuals.slope(), 0.5),
+                                Form::Square => (&f.d, 1.0),
+                            };
+                            for ((y, d), row) in y.iter_mut().zip(d).zip(&linear) {
+                                *y += sign * d - factor * dot(row, &s);
                             }
                         }
                         None => y.iter_mut().zip(&f.d).for_each(|(y, d)| *y += sign * weight(*k) * d),
@@ -535,7 +574,8 @@ impl Curvatures {
             }
             let secant = &mut self.secants[block];
             // What is left of residuals is proportional to them, and falls with them.
-            if members.iter().any(|k| from.functions[*k].residuals.is_some()) {
+            let is_norm = |residuals: &Residuals| residuals.form == Form::Norm;
+            if members.iter().any(|k| from.functions[*k].residuals.as_ref().is_some_and(is_norm)) {
                 let bent: f64 = secant.iter().zip(&s).map(|(row, x)| dot(row, &s) * x).sum();
                 let size = (dot(&y, &s) / bent).abs();
                 if size < 1.0 {
