@@ -7,10 +7,10 @@
 //! optimum of each goal alone  ->  points between neighbours, in the widest gaps first  ->  points not dominated
 //! ```
 //!
-//! Each point is the solution of a scalar problem ([`Scalarization`](crate::optimize::Scalarization)) that starts at a design interpolated between its
-//! neighbours, with their multipliers and curvatures, and ends after a few steps. Goals are fractions of their ranges
-//! over the anchors, so that results do not depend on units and weights. A front of three goals has the fronts of their
-//! pairs as its sides, and its inside starts from a surface spanned between them.
+//! Each point is the solution of a scalar problem ([`Scalarization`](crate::optimize::Scalarization)) that starts at a
+//! design interpolated between its neighbours, with their multipliers and curvatures, and ends after a few steps. Goals
+//! are fractions of their ranges over the anchors, so that results do not depend on units and weights. A front of three
+//! goals has the fronts of their pairs as its sides, and its inside starts from a surface spanned between them.
 
 mod front;
 mod request;
