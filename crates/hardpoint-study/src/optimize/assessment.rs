@@ -9,6 +9,9 @@ use crate::evaluation::{Motions, StudyCost};
 pub const LIMIT_KEPT: f64 = 1e-8;
 /// Relative difference of objectives below which the search with the smallest optimality residual is the best one.
 pub(super) const AS_GOOD: f64 = 1e-9;
+/// Objectives with a relative difference below this are equal to round-off; the design with the smaller optimality
+/// residual is then the better one.
+pub(super) const THE_SAME: f64 = 1e-12;
 
 /// Evaluated design with its goals and limits.
 #[derive(Clone, Debug, Default)]

@@ -4,7 +4,7 @@ mod corner;
 mod polish;
 mod saddle;
 
-use super::assessment::{AS_GOOD, LIMIT_KEPT, assess, limit_scales};
+use super::assessment::{AS_GOOD, LIMIT_KEPT, THE_SAME, assess, limit_scales};
 use super::local::LocalSteps;
 use super::optimality::Optimality;
 use super::problem::{Point, Problem};
@@ -23,9 +23,6 @@ const AGAIN: usize = 3;
 const NO_LESS: f64 = 1e-14;
 /// A search is also at rest if its step is below this fraction of the bounds.
 const RESTING: f64 = 1e-13;
-/// Objectives with a relative difference below this are equal to round-off; the design with the smaller optimality
-/// residual is then the better one.
-pub(super) const THE_SAME: f64 = 1e-12;
 /// Change of a limit over the bounds of a variable, as a fraction of its scale, that is still round-off.
 const LIMIT_ROUND_OFF: f64 = 1e-10;
 /// A run that reduces the optimality residual to this fraction is progress, whatever its effect on the objective.

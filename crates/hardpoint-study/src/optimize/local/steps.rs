@@ -2,7 +2,7 @@
 
 use super::functions::{Scale, State};
 use super::scalarization::{Curvatures, Descent, SHARP, STEPS, Scalarization};
-use crate::optimize::descent::THE_SAME;
+use crate::optimize::assessment::THE_SAME;
 use crate::optimize::problem::Point;
 use crate::optimize::solver::{Memory, Solver};
 
