@@ -403,9 +403,16 @@ const BESIDE_LUMP: [&str; 6] = [
 
 #[test]
 fn least_distances_of_random_meshes_are_proved_and_greater_claims_are_refused() {
-    // `HARDPOINT_LUMPS=1000` sets their number, each against 100,000 samples.
-    let (most, samples) = number_of("HARDPOINT_LUMPS", 18);
-    let mut next = numbers(seed_or(382));
+    examine_meshes(seed_or(382), 18);
+    // A cylinder that is deepest in a mesh between two output times, where its rates do not lead.
+    examine_meshes(seed_or(8), 3);
+}
+
+/// Compares the least distances of shapes and random meshes with samples; `HARDPOINT_LUMPS=1000` sets their number,
+/// each against 100,000 samples.
+fn examine_meshes(seed: u64, usual: usize) {
+    let (most, samples) = number_of("HARDPOINT_LUMPS", usual);
+    let mut next = numbers(seed);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("lumps.toml");
     let (mut tally, mut failures) = (Tally::default(), Vec::new());
@@ -429,8 +436,8 @@ fn least_distances_of_random_meshes_are_proved_and_greater_claims_are_refused() 
         examine(&model, &found.pairs[0], (samples, bounds), &mut prover, &mut tally, &mut fail);
     }
     tally.print(&format!("{most} meshes"));
-    // Rings around a mesh have no bounds, and some shapes go into theirs.
-    assert!(2 * tally.proved > most, "{} of {most}", tally.proved);
+    // Rings around a mesh have no bounds. Nothing is proved of the depth of an overlap.
+    assert!(2 * tally.proved > most - tally.meeting, "{} of {most}", tally.proved);
     assert!(failures.is_empty(), "{} failures:\n{}", failures.len(), failures.join("\n"));
 }
 

@@ -2,6 +2,7 @@
 
 use crate::model::{BodyId, Model, ShapeId};
 use crate::motion::Motion;
+use crate::number;
 use crate::run::Analysis;
 
 use super::posed_motion::{PosedMotion, Reach, turning_times};
@@ -21,6 +22,8 @@ const PASSING: f64 = 0.05;
 const SMOOTH: f64 = 1e-3;
 /// Interval that is not divided further in search of other features, as a fraction of the motion.
 const NARROW: f64 = 1e-5;
+/// The same in search of the deepest overlap: depths may be level over a large part of the motion.
+const NARROW_DEPTH: f64 = 1e-3;
 
 /// Distances of all pairs at the times of a motion that were solved so far.
 pub(super) struct Curves<'m> {
@@ -93,30 +96,33 @@ impl<'m> Curves<'m> {
         turning_times(&self.times, &self.turning[p])
     }
 
-    /// Times within intervals in which a pair may be nearer than at any time so far, or touch unseen, since other parts
-    /// of its shapes may pass each other there.
+    /// Times within intervals in which a pair may be nearer, or deeper in each other, than at any time so far, or touch
+    /// unseen, since other parts of its shapes may pass each other there.
     pub fn unseen(&self, p: usize, is_left_out: &dyn Fn(usize) -> bool) -> Vec<f64> {
         let (times, samples, reaches) = (&self.times, &self.samples[p], &self.reaches[p]);
         let Some(last) = samples.len().checked_sub(1) else { return Vec::new() };
         let span = times[last] - times[0];
-        let least = samples.iter().map(|s| s.distance[0]).fold(f64::INFINITY, f64::min).max(0.0);
-        let mut add = Vec::new();
-        for k in 0..last {
-            let (Some(before), Some(after)) = (reaches[k], reaches[k + 1]) else { continue };
-            let (speed, radius) = (SPEEDS * before.speed.max(after.speed), after.radius);
-            let h = times[k + 1] - times[k];
-            let [from, to] = [samples[k].distance, samples[k + 1].distance];
+        let least = samples.iter().map(|s| s.distance[0]).fold(f64::INFINITY, f64::min);
+        let is_unseen = |k: &usize| {
+            let (Some(before), Some(after)) = (reaches[*k], reaches[k + 1]) else { return false };
+            let ends = &samples[*k..k + 2];
+            let are_apart = ends.iter().all(|s| s.distance[0] > 0.0);
+            let is_excluded = match are_apart {
+                true => is_left_out(*k),
+                false => self.at_rest || ends.iter().any(ShapeDistance::is_deep),
+            };
+            if is_excluded {
+                return false;
+            }
+            let (least, narrow) = if are_apart { (least.max(0.0), NARROW) } else { (least, NARROW_DEPTH) };
+            let h = times[k + 1] - times[*k];
+            let way = SPEEDS * before.speed.max(after.speed) * h;
+            let [from, to] = number::both([0, 1], |n| ends[n].distance);
             // The distance changes by no more than the shapes move.
-            let at_least = 0.5 * (from[0] + to[0] - speed * h);
-            if h <= NARROW * span || at_least >= least || !(from[0] > 0.0 && to[0] > 0.0) || is_left_out(k) {
-                continue;
-            }
-            let error = cubic_error([from, to], h);
-            if speed * h > PASSING * radius || !(error <= SMOOTH * speed * h) {
-                add.extend(pieces(times[k], times[k + 1]));
-            }
-        }
-        add
+            let is_possible = h > narrow * span && 0.5 * (from[0] + to[0] - way) < least;
+            is_possible && (way > PASSING * after.radius || !(cubic_error([from, to], h) <= SMOOTH * way))
+        };
+        (0..last).filter(is_unseen).flat_map(|k| pieces(times[k], times[k + 1])).collect()
     }
 
     /// Index of the time at which the least distance of all pairs is greatest (sign 1) or least (-1) in a window.
