@@ -15,7 +15,7 @@ pub fn length(bytes: usize) -> usize {
     2 * pairs + rest.div_ceil(SINGLE).min(2)
 }
 
-/// Text of bytes, the lowest bits first. It has no iterators, which cost the most of its time where it is not optimised.
+/// Text of bytes, the lowest bits first. It has no iterators, which take most of its time where it is not optimised.
 pub fn encode(bytes: &[u8]) -> String {
     let mut text = vec![0; length(bytes.len())];
     let (mut number, mut bits, mut byte, mut at) = (0_usize, 0, 0, 0);

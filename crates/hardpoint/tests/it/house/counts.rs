@@ -27,7 +27,7 @@ const CEILINGS: &[(&str, [usize; 5])] = &[
     ("hardpoint-import", [34, 0, 10, 0, 0]),
     ("hardpoint-report", [10, 0, 5, 0, 3]),
     ("hardpoint-study", [13, 0, 2, 0, 0]),
-    ("hardpoint-tape", [4, 0, 0, 0, 0]),
+    ("hardpoint-tape", [3, 0, 0, 0, 0]),
     ("joint", [1, 0, 0, 0, 0]),
     ("law", [1, 0, 0, 0, 0]),
     ("load", [0, 0, 0, 0, 6]),
