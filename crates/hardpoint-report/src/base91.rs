@@ -1,4 +1,4 @@
-//! Bytes as text of a page: 13 bits in two characters, an eighth less than base64 takes beyond the bytes.
+//! Bytes as text of a page: 13 bits in two characters, a thirteenth less than base64 takes.
 
 /// Digits that end neither a script of HTML nor a string in quotation marks, as `page/report.html` and
 /// `web/src/unpack.ts` know them.
