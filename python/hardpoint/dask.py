@@ -371,8 +371,8 @@ def _search(asked: _Search, first: int) -> tuple[str, list[float] | None, list[f
 
 KEPT = 1e-8
 """Relative violation up to which a limit counts as kept, as in the engine."""
-THE_SAME = 1e-12
-"""Relative difference up to which objectives count as equal; then the one closer to an optimum is chosen."""
+AS_GOOD = 1e-9
+"""Relative difference up to which objectives are as good, as in the engine; then the one closer to an optimum is chosen."""
 
 
 def _best(found: list[dict]) -> int:
@@ -386,7 +386,7 @@ def _best(found: list[dict]) -> int:
 
     ranks = [rank(facts) for facts in found]
     exceeds, least = min(ranks)
-    as_good = [k for k, (e, value) in enumerate(ranks) if e == exceeds and (value == least or value - least <= THE_SAME * abs(least))]
+    as_good = [k for k, (e, value) in enumerate(ranks) if e == exceeds and (value == least or value - least <= AS_GOOD * abs(least))]
     return min(as_good, key=lambda k: float("inf") if found[k]["kkt"] is None else found[k]["kkt"])
 
 

@@ -598,5 +598,5 @@ def test_the_best_search():
     none = facts(None, None, None)
     assert best([facts(1.0, 0.1, 0.0), facts(3.0, 0.0, 0.5), facts(2.0, 1e-9, 0.5), none]) == 2
     assert best([none, facts(1.0, 0.2, 0.0), facts(3.0, 0.1, 0.0)]) == 2
-    assert best([facts(1.0 + 1e-14, 0.0, 1e-9), facts(1.0, 0.0, 1e-3), facts(1.0 + 1e-9, 0.0, 0.0)]) == 0
+    assert best([facts(1.0 + 1e-10, 0.0, 1e-9), facts(1.0, 0.0, 1e-3), facts(1.0 + 1e-8, 0.0, 0.0)]) == 0
     assert best([none, none]) == 0
