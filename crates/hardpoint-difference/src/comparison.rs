@@ -73,7 +73,18 @@ impl Comparison {
     /// hardly any effect, it is relative to the sensitivity that would change the motion by one part in a thousand per
     /// natural step.
     pub fn of(model: &Model, solution: &Solution, d: &Difference) -> Self {
-        Self::where_decided(model, solution, d, &UndecidedOutputs::undefined(model, solution, d.variable))
+        Self::with_clearances(model, solution, &NonsmoothClearances::of(model, solution), d)
+    }
+
+    /// The same for one of several variables; the clearances are those of the solution.
+    pub fn with_clearances(
+        model: &Model,
+        solution: &Solution,
+        nonsmooth: &NonsmoothClearances,
+        d: &Difference,
+    ) -> Self {
+        let undecided = UndecidedOutputs::undefined(model, solution, nonsmooth, d.variable);
+        Self::where_decided(model, solution, d, &undecided)
     }
 
     /// Compares as [`Comparison::of`], but skips outputs at times at which the differences are undecided.
@@ -195,35 +206,60 @@ pub struct UndecidedOutputs {
 /// away.
 const KINK: f64 = 1e-4;
 
+/// Clearances of a motion that differences do not follow, by output time and clearance.
+#[derive(Clone, Debug, Default)]
+pub struct NonsmoothClearances {
+    /// At an equilibrium, features that are equally deep in each other.
+    tied: Vec<bool>,
+    /// Along a motion, rates that jump.
+    jumping: Vec<bool>,
+}
+
+impl NonsmoothClearances {
+    /// Those of a solution of the nominal design.
+    pub fn of(model: &Model, solution: &Solution) -> Self {
+        let motion = &solution.motion;
+        if model.clearances.is_empty() {
+            Self::default()
+        } else if model.equilibrium.is_some() {
+            Self { tied: tied_clearances(model, motion), jumping: Vec::new() }
+        } else {
+            Self { tied: Vec::new(), jumping: jumping_clearances(model, motion) }
+        }
+    }
+}
+
 impl UndecidedOutputs {
     /// Outputs that have a value and no derivative by a variable: where features of shapes are equally deep in each
     /// other at an equilibrium. Along a motion such outputs have no rates either, which shows it, and rates may jump.
-    pub fn undefined(model: &Model, solution: &Solution, variable: VariableId) -> Self {
-        if model.clearances.is_empty() {
-            return Self::default();
-        }
+    pub fn undefined(
+        model: &Model,
+        solution: &Solution,
+        NonsmoothClearances { tied, jumping }: &NonsmoothClearances,
+        variable: VariableId,
+    ) -> Self {
         let (measured, clearances) = (&solution.measured, model.clearances.len());
         let columns = measured.outputs.len();
         let of: Vec<_> = measured.outputs.iter().map(|output| clearances_of(model, output.source)).collect();
-        let all = |is: &dyn Fn(usize, usize) -> bool| -> Vec<bool> {
-            let steps = 0..solution.motion.len();
-            steps.flat_map(|k| (0..columns).map(move |m| (k, m))).map(|(k, m)| is(k, m)).collect()
+        let all = |found: &[bool], is: &dyn Fn(usize, usize) -> bool| -> Vec<bool> {
+            let any = |k: usize, m: usize| of[m].iter().any(|c| found[k * clearances + c.0]);
+            let steps = if found.is_empty() { 0..0 } else { 0..solution.motion.len() };
+            let places = steps.flat_map(|k| (0..columns).map(move |m| (k, m)));
+            places.map(|(k, m)| any(k, m) && is(k, m)).collect()
         };
-        let any = |found: &[bool], k: usize, m: usize| of[m].iter().any(|c| found[k * clearances + c.0]);
-        if model.equilibrium.is_none() {
-            let jumping = jumping_clearances(model, &solution.motion);
-            return Self { places: Vec::new(), jumps: all(&|k, m| any(&jumping, k, m)), columns };
-        }
-        let tied = tied_clearances(model, &solution.motion);
-        let undefined =
-            |k: usize, m: usize| any(&tied, k, m) && measured.derivative(k, variable, m, 0).is_nan();
-        Self { places: all(&undefined), jumps: Vec::new(), columns }
+        let places = all(tied, &|k, m| measured.derivative(k, variable, m, 0).is_nan());
+        Self { places, jumps: all(jumping, &|_, _| true), columns }
     }
 
     /// Decides from the difference with the finest step. Undecided are magnitudes that reach zero within the step,
     /// where `abs(v)` has a kink and no derivative at v = 0, outputs without a value in a moved design, and those that
     /// are [undefined](Self::undefined). All are decided if there is no difference.
-    pub fn by(model: &Model, solution: &Solution, finest: Option<&Difference>) -> Self {
+    pub fn by(
+        model: &Model,
+        solution: &Solution,
+        nonsmooth: &NonsmoothClearances,
+        finest: Option<&Difference>,
+    ) -> Self {
         let Some(d) = finest else { return Self::default() };
         let measured = &solution.measured;
         let columns = measured.outputs.len();
@@ -237,13 +273,13 @@ impl UndecidedOutputs {
         };
         let sources: Vec<Vec<usize>> =
             (0..columns).map(|m| measures_of(model, measured.outputs[m].source)).collect();
-        let undefined = Self::undefined(model, solution, d.variable);
+        let undefined = Self::undefined(model, solution, nonsmooth, d.variable);
         let undecided = |place: usize| {
             let (k, m) = (place / columns, place % columns);
             d.outputs[place][0].is_nan() || undefined.at(k, m, 0) || sources[m].iter().any(|m| kinked(k, *m))
         };
         let places = (0..columns * solution.motion.len()).map(undecided).collect();
-        Self { places, jumps: undefined.jumps.clone(), columns }
+        Self { places, jumps: undefined.jumps, columns }
     }
 
     fn at(&self, k: usize, m: usize, order: usize) -> bool {

@@ -11,6 +11,6 @@ mod comparison;
 mod difference;
 mod magnitude;
 
-pub use comparison::{Comparison, StepError, UndecidedOutputs};
+pub use comparison::{Comparison, NonsmoothClearances, StepError, UndecidedOutputs};
 pub use difference::{Difference, DifferenceScheme, finite_differences, finite_differences_each};
 pub use magnitude::Magnitude;

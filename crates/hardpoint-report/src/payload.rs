@@ -26,8 +26,8 @@ use hardpoint::sensitivity::{BodySensitivity, admissibility_at_design};
 use hardpoint::space::Vec3;
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::{Appearance, ModelFile, Units};
-use hardpoint_study::Comparison;
 use hardpoint_study::difference::Difference;
+use hardpoint_study::{Comparison, NonsmoothClearances};
 use hardpoint_table::series::{self, Scale, settled};
 
 use crate::clearance::ClearanceFact;
@@ -620,12 +620,14 @@ impl<'a> Compose<'a> {
     }
 
     fn variables(&self, facts: &Facts, differences: &[Option<Difference>]) -> Vec<Variable> {
+        let is_compared = differences.iter().any(Option::is_some);
+        let nonsmooth = is_compared.then(|| NonsmoothClearances::of(self.model, self.solution));
         let variable = |(b, fact): (usize, &crate::facts::VariableFact)| {
             let known =
                 matches!(fact.answer, VariableAdmissibility::Admissible | VariableAdmissibility::Reassembled);
             let of = &self.model.variables[b];
             let shown = |x: f64| self.units.from_si(of.quantity, x);
-            let difference = differences.get(b).and_then(Option::as_ref);
+            let difference = differences.get(b).and_then(Option::as_ref).zip(nonsmooth.as_ref());
             Variable {
                 name: fact.name.clone(),
                 description: fact.change.replace('`', ""),
@@ -673,11 +675,18 @@ impl<'a> Compose<'a> {
         (0..self.model.bodies.len()).map(of_body).collect()
     }
 
-    fn sensitivities(&self, b: usize, difference: Option<&Difference>) -> Vec<Sensitivity> {
+    fn sensitivities(
+        &self,
+        b: usize,
+        difference: Option<(&Difference, &NonsmoothClearances)>,
+    ) -> Vec<Sensitivity> {
         let measured = &self.solution.measured;
         let columns = measured.outputs.len();
         let bodies = self.model.bodies.len();
-        let comparison = difference.map(|d| Comparison::of(self.model, self.solution, d));
+        let (model, solution) = (self.model, self.solution);
+        let comparison =
+            difference.map(|(d, nonsmooth)| Comparison::with_clearances(model, solution, nonsmooth, d));
+        let difference = difference.map(|(d, _)| d);
         let mut list = Vec::new();
         for (m, output) in measured.outputs.iter().enumerate() {
             let overlay = difference.zip(comparison.as_ref()).map(|(d, comparison)| {

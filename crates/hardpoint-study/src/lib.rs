@@ -101,7 +101,7 @@ mod samples;
 mod validity;
 
 pub use hardpoint_difference as difference;
-pub use hardpoint_difference::{Comparison, Magnitude, StepError};
+pub use hardpoint_difference::{Comparison, Magnitude, NonsmoothClearances, StepError};
 
 pub use evaluation::{DesignEvaluation, EvaluationError, Motions, StudyCost};
 pub use position::position_model;

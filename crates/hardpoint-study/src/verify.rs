@@ -10,7 +10,9 @@ use std::ops::ControlFlow;
 use hardpoint::model::VariableId;
 use hardpoint::run::{Analysis, Solution};
 use hardpoint::sensitivity::Admissibility;
-use hardpoint_difference::{Comparison, DifferenceScheme, StepError, UndecidedOutputs, finite_differences};
+use hardpoint_difference::{
+    Comparison, DifferenceScheme, NonsmoothClearances, StepError, UndecidedOutputs, finite_differences,
+};
 
 use super::progress::{Progress, Step};
 
@@ -107,9 +109,10 @@ pub fn verify(
     let mut checks = Vec::new();
     let mut interrupted = false;
     let variables = analysis.model().variables.len();
+    let nonsmooth = NonsmoothClearances::of(analysis.model(), solution);
     for k in 0..variables {
         let variable = VariableId(k);
-        let check = check_variable(analysis, solution, options, variable);
+        let check = check_variable(analysis, (solution, &nonsmooth), options, variable);
         let is_whole = check.is_some();
         checks.extend(check);
         if !is_whole
@@ -125,7 +128,7 @@ pub fn verify(
 /// Checks one variable; `None` if the analysis was ended meanwhile.
 fn check_variable(
     analysis: &Analysis<'_>,
-    solution: &Solution,
+    (solution, nonsmooth): (&Solution, &NonsmoothClearances),
     options: &Options,
     variable: VariableId,
 ) -> Option<VariableCheck> {
@@ -143,7 +146,7 @@ fn check_variable(
         return None;
     }
     let differences: Vec<_> = differences.into_iter().flatten().collect();
-    let undecided = UndecidedOutputs::by(model, solution, differences.last());
+    let undecided = UndecidedOutputs::by(model, solution, nonsmooth, differences.last());
     for d in &differences {
         let comparison = Comparison::where_decided(model, solution, d, &undecided);
         sweep.push(comparison.worst().cloned().unwrap_or_else(|| StepError {

@@ -469,25 +469,20 @@ pub(super) fn segment_and_cylinder([a, b]: [Vec3; 2], drum: &Drum) -> Nearest {
     if is_parallel {
         t = 0.5;
     }
-    let (mut feature, mut q, mut distance) = drum.nearest(at(t));
+    let mut near = drum.nearest(at(t));
     let mut is_inside = t > 0.0 && t < 1.0 && !is_parallel;
-    if is_inside
-        && feature == Feature::Line
-        && let Some(middle) = drum.middle_beside([a, b], t)
-    {
-        // The segment goes on beyond a cap.
+    // The segment goes on beyond a cap, or beyond the rim of a cap that it is parallel to.
+    let beyond_cap = (is_inside && near.0 == Feature::Line).then(|| drum.middle_beside([a, b], t)).flatten();
+    let middle = beyond_cap.or_else(|| {
+        let is_level = !is_parallel && drum.is_level(b - a);
+        is_level.then(|| middle_of_level(|t| drum.slope(at(t), b - a), (b - a).norm(), t)).flatten()
+    });
+    if let Some(middle) = middle {
         t = middle;
-        (feature, q, distance) = drum.nearest(at(t));
-        (is_parallel, is_inside) = (true, false);
-    } else if !is_parallel
-        && drum.is_level(b - a)
-        && let Some(middle) = middle_of_level(|t| drum.slope(at(t), b - a), (b - a).norm(), t)
-    {
-        // It goes on beyond the rim of a cap that it is parallel to.
-        t = middle;
-        (feature, q, distance) = drum.nearest(at(t));
+        near = drum.nearest(at(t));
         (is_parallel, is_inside) = (true, false);
     }
+    let (feature, q, distance) = near;
     // Over a cap, beside a parallel side, and at the edge between both within the cylinder, the point stays where it
     // is.
     let slides = is_inside

@@ -102,7 +102,7 @@ pub(crate) struct Scalarization<'p> {
 }
 
 /// Progress of a search for the minimum of a scalarization.
-pub(crate) struct Descent {
+pub(crate) struct Minimization {
     pub here: State,
     pub criticality: Criticality,
     curvatures: Curvatures,
@@ -173,10 +173,10 @@ impl Scalarization<'_> {
 
     /// Searches from a design that can be evaluated. Returns the design with the smallest residual.
     pub fn solve(&self, start: State, curvatures: Curvatures) -> Option<Solved> {
-        let mut descent = self.descent(start, curvatures);
+        let mut minimization = self.minimization(start, curvatures);
         let mut best: Option<(State, Criticality)> = None;
         for _ in 0..self.steps {
-            let Descent { here, criticality, .. } = &descent;
+            let Minimization { here, criticality, .. } = &minimization;
             let (t, violation) = self.merit(here);
             let apart = self.positions(here).iter().map(|p| t - p).fold(0.0, f64::max);
             let is_kept = violation <= LIMIT_KEPT;
@@ -191,25 +191,25 @@ impl Scalarization<'_> {
                 return None;
             }
             let shortest = if is_sharp { self.near.min(RADIUS) * SHARP.sqrt() } else { 0.0 };
-            if !self.advance(&mut descent, shortest) {
+            if !self.advance(&mut minimization, shortest) {
                 break;
             }
         }
-        best.map(|(state, criticality)| Solved { state, criticality, curvatures: descent.curvatures })
+        best.map(|(state, criticality)| Solved { state, criticality, curvatures: minimization.curvatures })
     }
 
     /// Search from a design that can be evaluated, before its first step.
-    pub fn descent(&self, here: State, mut curvatures: Curvatures) -> Descent {
+    pub fn minimization(&self, here: State, mut curvatures: Curvatures) -> Minimization {
         curvatures.fit(&here);
         let (radius, penalty, recent) = (RADIUS, PENALTY, Vec::new());
         let criticality = self.criticality(&here);
-        Descent { here, criticality, curvatures, radius, penalty, recent, outcome: None }
+        Minimization { here, criticality, curvatures, radius, penalty, recent, outcome: None }
     }
 
     /// Tries one step, which is made if it is good, or else shortens the next. Returns false at the end: the step is
     /// not longer than `shortest`.
-    pub fn advance(&self, descent: &mut Descent, shortest: f64) -> bool {
-        let Descent { here, criticality, curvatures, radius, penalty, recent, outcome } = descent;
+    pub fn advance(&self, minimization: &mut Minimization, shortest: f64) -> bool {
+        let Minimization { here, criticality, curvatures, radius, penalty, recent, outcome } = minimization;
         *outcome = None;
         let Some(minimum) = self.minimize_model(here, curvatures, *radius, *penalty) else {
             *radius *= SHRINK;

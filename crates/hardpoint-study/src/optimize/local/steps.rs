@@ -1,7 +1,7 @@
 //! Steps to the optimum of the weighted sum of all goals.
 
 use super::functions::{Scale, State};
-use super::scalarization::{Curvatures, Descent, SHARP, STEPS, Scalarization};
+use super::scalarization::{Curvatures, Minimization, SHARP, STEPS, Scalarization};
 use crate::optimize::assessment::THE_SAME;
 use crate::optimize::problem::Point;
 use crate::optimize::solver::{Memory, Solver};
@@ -17,7 +17,7 @@ const MUCH: f64 = 0.1;
 /// Solver by local models of the objective and all limits.
 pub(crate) struct LocalSteps<'p> {
     scalarization: Scalarization<'p>,
-    descent: Descent,
+    minimization: Minimization,
     has_ended: bool,
     /// Decrease of the objective so far.
     gained: f64,
@@ -50,18 +50,18 @@ impl<'p> LocalSteps<'p> {
             sharp: SHARP,
             steps: STEPS,
         };
-        let descent = scalarization.descent(state, curvatures);
-        Some(Self { scalarization, descent, has_ended: false, gained: 0.0, round_off, is_unfit: false })
+        let minimization = scalarization.minimization(state, curvatures);
+        Some(Self { scalarization, minimization, has_ended: false, gained: 0.0, round_off, is_unfit: false })
     }
 }
 
 impl Solver for LocalSteps<'_> {
     fn step(&mut self) -> Option<Vec<f64>> {
-        let before = self.descent.here.x.clone();
-        while !self.has_ended && self.descent.here.x == before {
+        let before = self.minimization.here.x.clone();
+        while !self.has_ended && self.minimization.here.x == before {
             self.has_ended = self.scalarization.memory.interrupted()
-                || !self.scalarization.advance(&mut self.descent, 0.0);
-            let Some([predicted, achieved]) = self.descent.outcome else {
+                || !self.scalarization.advance(&mut self.minimization, 0.0);
+            let Some([predicted, achieved]) = self.minimization.outcome else {
                 // The model is least where it begins.
                 self.has_ended = true;
                 break;
@@ -74,7 +74,7 @@ impl Solver for LocalSteps<'_> {
             }
             self.gained += achieved.max(0.0);
         }
-        (self.descent.here.x != before).then(|| self.descent.here.x.clone())
+        (self.minimization.here.x != before).then(|| self.minimization.here.x.clone())
     }
 
     fn is_unfit(&self) -> bool {
