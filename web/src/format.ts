@@ -31,14 +31,29 @@ export function pretty(unit: string): string {
   return unit === '1' ? '' : unit.replaceAll('^2', '²').replaceAll('^3', '³').replaceAll('*', '·')
 }
 
-/** Unit of a derivative: `deg/s` per `mm` is `deg/(s·mm)`, and `deg` per `N*m` is `deg/(N·m)`. */
+/**
+ * Unit of a derivative, as the command writes it (`per` in `hardpoint-table/src/figures.rs`): `deg/s` per `mm` is
+ * `deg/(s·mm)`, `deg/mm` per `mm` is `deg/mm²`, and `deg` per `N*m` is `deg/(N·m)`.
+ */
 export function per(unit: string, by: string): string {
   if (by === '1') return pretty(unit)
-  const [top, ...below] = pretty(unit || '1').split('/')
-  const divisor = by.includes('/') ? `(${pretty(by)})` : pretty(by)
-  const bottom = [...below.map((part) => part.replace(/^\((.*)\)$/, '$1')), divisor]
-  const isProduct = bottom.length > 1 || /^[^(]*·/.test(bottom[0])
-  return `${top || '1'}/${isProduct ? `(${bottom.join('·')})` : bottom[0]}`
+  const slash = unit.indexOf('/')
+  const top = (slash < 0 ? unit : unit.slice(0, slash)) || '1'
+  if (slash < 0) return pretty(`${top}/${/[*/]/.test(by) ? `(${by})` : by}`)
+  const factors = unit
+    .slice(slash + 1)
+    .replace(/^\((.*)\)$/, '$1')
+    .split('*')
+  const same = factors.findIndex((factor) => factor === by || powerOf(factor, by))
+  if (same >= 0) factors[same] = `${by}^${(powerOf(factors[same], by) ?? 1) + 1}`
+  else factors.push(by.includes('/') ? `(${by})` : by)
+  return pretty(`${top}/${factors.length > 1 ? `(${factors.join('*')})` : factors[0]}`)
+}
+
+/** 2 of `mm^2`, as a power of `mm`. */
+function powerOf(factor: string, by: string): number | undefined {
+  const digits = factor.startsWith(`${by}^`) ? factor.slice(by.length + 1) : ''
+  return /^\d+$/.test(digits) ? Number(digits) : undefined
 }
 
 /** `name [unit]`, as on an axis. */

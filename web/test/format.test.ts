@@ -29,6 +29,10 @@ test('units of derivatives divide by the unit of the variable', () => {
   expect(per('deg', 'N*m/deg')).toBe('deg/(N·m/deg)')
   expect(per('mm/s', '1')).toBe('mm/s')
   expect(per('deg', 'mm/s')).toBe('deg/(mm/s)')
+  expect(per('deg/mm', 'mm')).toBe('deg/mm²')
+  expect(per('mm/deg^2', 'deg')).toBe('mm/deg³')
+  expect(per('deg/(s*mm)', 'mm')).toBe('deg/(s·mm²)')
+  expect(per('deg/s^2', 'mm/s')).toBe('deg/(s²·(mm/s))')
 })
 
 test('powers in units are set as such', () => {
