@@ -1,4 +1,4 @@
-import { courseRange, slopeAt, slopeAlone, stepAt } from '../curve'
+import { type Course, type Curve, courseRange, slopeAt, slopeAlone, stepAt } from '../curve'
 import { el, setAttribute, setText } from '../dom'
 import { number, per, pretty, signed } from '../format'
 import { aboutQuantity } from '../glossary'
@@ -129,11 +129,23 @@ function motionText(state: State, { quantity, time, unit }: Value, over: number 
   const range = courseRange(state.course(index), times)
   if (!range) return ''
   const reference = state.former?.quantities[index] ?? quantities[index].curves
-  const before = state.isCompared ? courseRange(reference, times) : undefined
+  const before = state.isCompared ? referenceRange(reference, times) : undefined
   const size = Math.max(...range.map(Math.abs))
   const ends = range.map((value, k) => endText(value, before?.[k], size)).join(' … ')
   const gradient = over === undefined ? '' : slopeText(state, index, over, time ?? 0, unit)
   return [range[1] - range[0] > noise(size) && ends, gradient].filter(Boolean).join(' · ')
+}
+
+/** Ranges of reference courses, which stay while the design is dragged. */
+const referenceRanges = new WeakMap<Course, { times: Curve; range: [number, number] | undefined }>()
+
+function referenceRange(course: Course, times: Curve): [number, number] | undefined {
+  let found = referenceRanges.get(course)
+  if (found?.times !== times) {
+    found = { times, range: courseRange(course, times) }
+    referenceRanges.set(course, found)
+  }
+  return found.range
 }
 
 /** An end of a range of numbers of some size, with its change to the former one. */

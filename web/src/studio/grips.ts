@@ -83,6 +83,8 @@ export class Grips {
   #fields: NumberField[] = []
   #size: number
   #pending = false
+  /** Move of a drag that the label shows with the next picture, and the position that its change counts from. */
+  #untold?: { shown: Grip; from: Vector3 }
   /** The last move and where it began, until it is known whether the mechanism followed. */
   #last?: { shown: Grip; from: Vector3; snap: number; edition: string }
 
@@ -150,7 +152,7 @@ export class Grips {
 
   /** Chooses a hardpoint by its name. */
   choose(name: string | undefined): void {
-    this.#label.hidden = true
+    this.#hideLabel()
     this.#chosen = this.#shown.find(({ grip }) => grip.name === name)
     for (const { grip, button } of this.#shown) button.setAttribute('aria-pressed', String(grip.name === name))
     this.#show(true)
@@ -201,6 +203,8 @@ export class Grips {
   /** Puts the buttons where their hardpoints are in the picture. */
   #follow(): void {
     if (!this.on) return
+    if (this.#untold) this.#tell(this.#untold.shown, this.#untold.from)
+    this.#untold = undefined
     for (const shown of this.#shown) this.view.put(shown.button, this.#world(shown))
     this.#guide.replaceChildren()
     const chosen = this.#chosen && !this.#chosen.button.hidden ? this.#chosen : undefined
@@ -268,7 +272,7 @@ export class Grips {
     if (!this.#activeDrag) return
     this.#dragged()
     this.#activeDrag = undefined
-    this.#label.hidden = true
+    this.#hideLabel()
     this.#settle()
     this.#follow()
     this.onRelease()
@@ -282,7 +286,7 @@ export class Grips {
     this.#pending = false
     this.#moveTo(hold.shown, hold.nominal.clone(), 0, this.mover.place(hold.shown.grip))
     this.#last = undefined
-    this.#label.hidden = true
+    this.#hideLabel()
     this.onRelease()
   }
 
@@ -314,7 +318,9 @@ export class Grips {
   #moveTo(shown: Grip, place: Vector3, snap: number, from: Vector3): void {
     this.#last = { shown, from, snap: snap || this.#resolution, edition: this.state.edition }
     this.mover.move(shown.grip, place, { snap, before: from })
-    this.#tell(shown, from)
+    // While a hand drags, the label changes with the picture of the solved design: on its own it costs a frame.
+    if (this.#activeDrag && this.state.solver) this.#untold = { shown, from }
+    else this.#tell(shown, from)
   }
 
   /**
@@ -340,6 +346,11 @@ export class Grips {
       this.state.bound ||= refusal
       this.onRelease()
     })
+  }
+
+  #hideLabel(): void {
+    this.#untold = undefined
+    this.#label.hidden = true
   }
 
   /** Shows the change since a position next to the hardpoint. */

@@ -1,4 +1,4 @@
-import { el, prose, svg } from '../dom'
+import { el, prose, setAttribute, svg } from '../dom'
 import type { History, Snapshot, Step } from './history'
 import './studio.css'
 
@@ -54,8 +54,9 @@ export function historyBar(history: History, { show, compare, write }: HistoryAc
       [forth, 'Redo', 'Ctrl+Y', history.redoable],
     ] as const) {
       button.disabled = of === undefined
-      button.title = of === undefined ? `${what} (${keys})` : `${what}: ${of} (${keys})`
-      button.setAttribute('aria-label', button.title)
+      const title = of === undefined ? `${what} (${keys})` : `${what}: ${of} (${keys})`
+      setAttribute(button, 'title', title)
+      setAttribute(button, 'aria-label', title)
     }
     reset.disabled = !history.changed
   }
