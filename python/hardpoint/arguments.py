@@ -21,6 +21,11 @@ class ArgumentError(UsageError, TypeError):
     """A call with an unknown, missing or superfluous argument."""
 
 
+def amount(n: int, noun: str, plural: str = "") -> str:
+    """A number with its noun: `1 cell`, `2 cells`."""
+    return f"{n} {noun if n == 1 else plural or noun + 's'}"
+
+
 def count(name: str, value: Any, least: int = 1) -> int | None:
     """A whole number from `least`, or None."""
     if value is None:

@@ -39,7 +39,7 @@ except ImportError as missing:
     raise ImportError(f"hardpoint.dask needs distributed, fsspec and pyarrow ({missing}): pip install 'hardpoint[dask]'") from missing
 
 from . import __version__, arguments, files
-from .arguments import by_name, count, instance, number
+from .arguments import amount, by_name, count, instance, number
 from .errors import StudyError, UsageError
 from .model import Model, Progress, listener
 from .studies import Study, outcome
@@ -202,7 +202,7 @@ class Stored:
 
     def __repr__(self) -> str:
         failed = f", {self.failed} of them failed" if self.failed else ""
-        return f"<hardpoint.dask.Stored at {self.store}: {self.designs} designs in {len(self.parts)} parts{failed}>"
+        return f"<hardpoint.dask.Stored at {self.store}: {amount(self.designs, 'design')} in {amount(len(self.parts), 'part')}{failed}>"
 
     def read(self, table: str = "designs") -> pyarrow.Table:
         """Reads the table of `designs`, or that of `curves`, in order of designs into memory."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .arguments import checked, count, instance, listed, ordered
+from .arguments import amount, checked, count, instance, listed, ordered
 from .errors import CannotFollow, StudyError, UsageError, index_of, unknown
 from .model import Model
 
@@ -167,7 +167,7 @@ class Function:
 
     def __repr__(self) -> str:
         parts = ", ".join(part.name for part in self.parts[:4]) + (", ..." if len(self.parts) > 4 else "")
-        return f"<hardpoint.Function of {self.model.name!r}: {parts} ({self.size} outputs) of {len(self.variables)} variables>"
+        return f"<hardpoint.Function of {self.model.name!r}: {parts} ({amount(self.size, 'output')}) of {amount(len(self.variables), 'variable')}>"
 
     def _one(self, found: np.ndarray) -> np.ndarray:
         if self.size != 1:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Union
 import numpy as np
 
 from . import _native, display, files, tools
-from .arguments import by_name, checked, count, labels, listed, number, numbers, ordered, together, word
+from .arguments import amount, by_name, checked, count, labels, listed, number, numbers, ordered, together, word
 from .arrays import frozen
 from .designs import Designs
 from .errors import Diagnostic, HardpointWarning, MotionStopped, UsageError, index_of, unknown
@@ -156,7 +156,7 @@ class Model:
 
     def __repr__(self) -> str:
         case = f", case {self.cases[self._case]!r}" if self._case is not None and self.cases else ""
-        return f"<hardpoint.Model {self.name!r}{case}: {len(self.bodies)} bodies, {len(self.joints)} joints, {len(self.variables)} design variables>"
+        return f"<hardpoint.Model {self.name!r}{case}: {amount(len(self.bodies), 'body', 'bodies')}, {amount(len(self.joints), 'joint')}, {amount(len(self.variables), 'design variable')}>"
 
     def _repr_html_(self) -> str:
         return display.model(self)

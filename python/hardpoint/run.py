@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Union
 import numpy as np
 
 from . import _native, display, plots, stored
-from .arguments import by_name, checked, count, listed, number, together
+from .arguments import amount, by_name, checked, count, listed, number, together
 from .arrays import free, frozen
 from .errors import CannotFollow, Diagnostic, UsageError, diagnostics, index_of
 
@@ -170,7 +170,7 @@ class Run:
 
     def __repr__(self) -> str:
         end = f", stopped: {self.stop.message}" if self.stop else ""
-        return f"<hardpoint.Run of {self.model.name!r}: {len(self)} output times{end}>"
+        return f"<hardpoint.Run of {self.model.name!r}: {amount(len(self), 'output time')}{end}>"
 
     # Measures and points
 

@@ -75,8 +75,8 @@ def load(path: str | os.PathLike) -> Run:
     try:
         with open(name, "rb") as contents:
             whole = contents.read()
-    except FileNotFoundError:
-        raise UsageError.saying(f"there is no file `{name}`") from None
+    except FileNotFoundError as error:
+        raise FileError.saying(f"there is no file `{name}`") from error
     except OSError as error:
         raise FileError.of_system("read", name, error) from error
     return unpacked(whole, name)

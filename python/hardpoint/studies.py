@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import display
-from .arguments import Called, numbers, same_shape
+from .arguments import Called, amount, numbers, same_shape
 from .arrays import free
 from .errors import UsageError, index_of
 
@@ -195,7 +195,7 @@ class DriverTable(dict[str, Any]):
         return self["outputs"][index_of("output of this table", output, self.outputs)]
 
     def __repr__(self) -> str:
-        return f"<hardpoint.DriverTable of {', '.join(self.outputs)} over {', '.join(self.drivers)}: {self['cells']} cells, {self['interpolation']}>"
+        return f"<hardpoint.DriverTable of {', '.join(self.outputs)} over {', '.join(self.drivers)}: {amount(self['cells'], 'cell')}, {self['interpolation']}>"
 
 
 def _weights(u: np.ndarray, width: np.ndarray, is_cubic: bool) -> list[list[np.ndarray]]:

@@ -202,7 +202,7 @@ def test_other_files_are_not_runs(tmp_path):
     for name in ("no.npz", "other.npz"):
         with pytest.raises(hardpoint.UsageError, match="is not a run of this package"):
             hardpoint.load_run(tmp_path / name)
-    with pytest.raises(hardpoint.UsageError, match="there is no file"):
+    with pytest.raises(hardpoint.FileError, match="there is no file"):
         hardpoint.load_run(tmp_path / "none.npz")
 
 
@@ -417,6 +417,8 @@ def test_everything_has_a_repr_that_says_what_it_is(toe, press):
     for thing in (toe, run, run.driver("motor"), run.reaction("A"), run.body(press.bodies[0]), toe.at(), hardpoint.Function(toe), toe.designs([[0.0] * 5], case="bump"), toe.optimize()):
         text = repr(thing)
         assert text.startswith("<hardpoint.") and " at 0x" not in text, text
+    one = hardpoint.Function(toe, of="toe", variables=list(toe.variables)[:1], case="bump")
+    assert repr(one).endswith("of 1 variable>"), repr(one)
 
 
 TABULATED = """

@@ -38,15 +38,27 @@ mod whatif;
 use std::ffi::OsString;
 use std::io::Write;
 
-use clap::{CommandFactory, Parser};
+use clap::{CommandFactory, FromArgMatches};
 
 use args::{Arguments, Command};
 use outcome::Outcome;
 use session::Session;
 
+/// Arguments of a command line. A negative number after an option is its value, so that the message is about its range.
+fn parsed(arguments: impl IntoIterator<Item = OsString>) -> Result<Arguments, clap::Error> {
+    let mut command = Arguments::command().mut_subcommands(|one| {
+        one.mut_args(|arg| {
+            let has_value = arg.get_long().is_some() && arg.get_action().takes_values();
+            arg.allow_negative_numbers(has_value)
+        })
+    });
+    let matches = command.try_get_matches_from_mut(arguments)?;
+    Arguments::from_arg_matches(&matches).map_err(|error| error.format(&mut command))
+}
+
 /// Runs the command and returns its exit code. The first argument is the name of the program.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
-    let arguments = match Arguments::try_parse_from(arguments) {
+    let arguments = match parsed(arguments) {
         Ok(arguments) => arguments,
         Err(error) => {
             // Help and version are results, everything else is an error.

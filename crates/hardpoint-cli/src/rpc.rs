@@ -246,12 +246,42 @@ impl Output {
 /// # Errors
 /// Fails if they have other keys or types.
 pub fn params_of<T: serde::de::DeserializeOwned>(params: Value) -> Result<T, RpcError> {
-    serde_json::from_value(params).map_err(|error| RpcError::invalid(format!("invalid parameters: {error}")))
+    T::deserialize(&params).map_err(|error| {
+        let named = invalid_parameter::<T>(&params).map_or("parameters".into(), |key| format!("parameter `{key}`"));
+        let count = |words: String, kind: &str| {
+            words.replace(&format!("expected {kind}"), "expected a whole number from 0")
+        };
+        let why = ["u8", "u16", "u32", "u64", "usize"].into_iter().fold(error.to_string(), count);
+        RpcError::invalid(format!("invalid {named}: {why}"))
+    })
+}
+
+/// The parameter without which the others are valid; `None` if there is none, or several are invalid.
+fn invalid_parameter<T: serde::de::DeserializeOwned>(params: &Value) -> Option<&str> {
+    let given = params.as_object()?;
+    let is_valid_without = |key: &&String| {
+        let mut others = given.clone();
+        others.remove(*key);
+        T::deserialize(Value::Object(others)).is_ok()
+    };
+    given.keys().find(is_valid_without).map(String::as_str)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_invalid_parameter_is_named() {
+        #[derive(Debug, serde::Deserialize)]
+        struct Asked {
+            #[allow(dead_code)]
+            samples: Option<u32>,
+        }
+        let error = params_of::<Asked>(json!({ "path": "a.toml", "samples": -4 })).unwrap_err();
+        let wanted = "invalid parameter `samples`: invalid value: integer `-4`, expected a whole number from 0";
+        assert_eq!(error.message, wanted);
+    }
 
     fn all(text: &str, format: MessageFormat) -> Vec<io::Result<Message>> {
         let mut input = text.as_bytes();

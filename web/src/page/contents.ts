@@ -353,7 +353,7 @@ export function sensitivityContent(state: State, subject: Subject): Content {
   content.lines.push(...content.lines.splice(first, 1))
   const { differences } = own.sensitivity
   const left = peers.length - shown.length
-  const rest = [at.note, left > 0 ? `Strongest ${shown.length} of ${peers.length}.` : '']
+  const rest = [at.note, left > 0 ? `Most influential: ${shown.length} of ${peers.length}.` : '']
     .filter((words) => words !== '')
     .join(' ')
   if (!differences) return overOther(state, subject.over, { ...content, caption: rest })

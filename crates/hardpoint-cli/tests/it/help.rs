@@ -89,6 +89,19 @@ fn the_default_number_of_iterations_is_that_of_the_file() {
 }
 
 #[test]
+fn a_negative_number_after_an_option_is_its_value() {
+    let bench = Bench::with(&[]);
+    for (arguments, expected) in [
+        (["sweep", "four_bar.toml", "--samples", "-5"], "'-5' for '--samples <N>': -5 is not in "),
+        (["optimize", "four_bar.toml", "--starts", "-1"], "'-1' for '--starts <N>': -1 is not in "),
+    ] {
+        let output = bench.run(&arguments);
+        let text = String::from_utf8(output.stderr).unwrap();
+        assert!(text.contains(expected) && output.status.code() == Some(2), "{text}");
+    }
+}
+
+#[test]
 fn every_example_of_every_help_runs() {
     let bench = Bench::with(&[]);
     copy(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models"), &bench.path("models"));

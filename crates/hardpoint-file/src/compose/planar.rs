@@ -266,8 +266,17 @@ fn variables(r: &mut Reader<'_>, model: &mut DeTable<'_>, plane: Plane) {
         let along = value.get_ref().as_table().and_then(|t| t.get("along"));
         let along = along.and_then(|v| Some((v.get_ref().as_str()?.to_owned(), v.span())));
         let both = along.filter(|(word, _)| word == plane.word || word == "xyz");
+        let moves = value.get_ref().as_table().is_some_and(|t| t.contains_key("move"));
         let entries = match both {
             None => vec![(name, value)],
+            // An entry without its main key, perhaps misspelt, is reported once and under its own name.
+            Some((_, at)) if !moves => {
+                let mut one = value;
+                if let Some(table) = table_of(&mut one) {
+                    table.insert(key("along", at.clone()), text(AXES[plane.axes[0]], at));
+                }
+                vec![(name, one)]
+            }
             Some((_, at)) => (0..3)
                 .filter(|axis| plane.coordinate(*axis).is_some())
                 .map(|axis| {

@@ -55,6 +55,14 @@ fn a_variable_in_both_axes_does_not_replace_one_of_the_same_name() {
 }
 
 #[test]
+fn a_misspelt_key_of_a_variable_in_both_axes_is_reported_once() {
+    let text = format!("{}design.cx = {{ moov = \"C\", along = \"xy\" }}\n", six_lines());
+    let Err(errors) = parse(&text, "planar.toml") else { panic!("accepted:\n{text}") };
+    let messages: Vec<&str> = errors.list().iter().map(|d| d.message.as_str()).collect();
+    assert_eq!(messages, ["design variable `cx` has no `move`", "unknown key `moov` in design variable `cx`"]);
+}
+
+#[test]
 fn cases_without_a_time_last_one_second_as_the_model_does() {
     let with_cases = file(&format!("{}[cases.slow]\nlaws.motor = \"20*t\"\n", six_lines()));
     let alone = file(&six_lines());

@@ -73,8 +73,10 @@ export function shownChange(mechanism: Mechanism, { arrows }: Variable): number 
 export const changeText = (change: number, { unit }: Variable) => `${number(change, 2)} ${pretty(unit)}`.trim()
 
 /** Maximum length of arrows; in proportion to a long chain they would be too long. */
-function longestArrow({ base, box, size, unit }: Mechanism): number {
-  const [, height] = (base?.box ?? box)
+function longestArrow(mechanism: Mechanism): number {
+  const { base, size, unit } = mechanism
+  // The box of a changed design would be that of its whole motion, made anew for each one.
+  const [, height] = (base ?? mechanism).box
     .getSize(new Vector3())
     .toArray()
     .sort((a, b) => b - a)
