@@ -417,7 +417,7 @@ def test_everything_has_a_repr_that_says_what_it_is(toe, press):
     for thing in (toe, run, run.driver("motor"), run.reaction("A"), run.body(press.bodies[0]), toe.at(), hardpoint.Function(toe), toe.designs([[0.0] * 5], case="bump"), toe.optimize()):
         text = repr(thing)
         assert text.startswith("<hardpoint.") and " at 0x" not in text, text
-    one = hardpoint.Function(toe, of="toe", variables=list(toe.variables)[:1], case="bump")
+    one = hardpoint.Function(toe.case("bump"), of="toe", variables=list(toe.variables)[:1])
     assert repr(one).endswith("of 1 variable>"), repr(one)
 
 

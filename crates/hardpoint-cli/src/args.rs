@@ -527,7 +527,13 @@ pub struct Map {
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     pub of: Vec<String>,
     /// Permitted error: of all outputs with this unit, or of one, such as `toe=0.001deg`; may be repeated
-    #[arg(long, value_name = "[NAME=]ERROR", allow_hyphen_values = true, value_delimiter = ',', required = true)]
+    #[arg(
+        long,
+        value_name = "[NAME=]ERROR",
+        allow_hyphen_values = true,
+        value_delimiter = ',',
+        required = true
+    )]
     pub error: Vec<String>,
     /// Interpolation of the table [default: hermite; for Modelica and Adams linear]
     #[arg(long, value_enum)]

@@ -247,7 +247,8 @@ impl Output {
 /// Fails if they have other keys or types.
 pub fn params_of<T: serde::de::DeserializeOwned>(params: Value) -> Result<T, RpcError> {
     T::deserialize(&params).map_err(|error| {
-        let named = invalid_parameter::<T>(&params).map_or("parameters".into(), |key| format!("parameter `{key}`"));
+        let named =
+            invalid_parameter::<T>(&params).map_or("parameters".into(), |key| format!("parameter `{key}`"));
         let count = |words: String, kind: &str| {
             words.replace(&format!("expected {kind}"), "expected a whole number from 0")
         };
@@ -279,7 +280,8 @@ mod tests {
             samples: Option<u32>,
         }
         let error = params_of::<Asked>(json!({ "path": "a.toml", "samples": -4 })).unwrap_err();
-        let wanted = "invalid parameter `samples`: invalid value: integer `-4`, expected a whole number from 0";
+        let wanted =
+            "invalid parameter `samples`: invalid value: integer `-4`, expected a whole number from 0";
         assert_eq!(error.message, wanted);
     }
 

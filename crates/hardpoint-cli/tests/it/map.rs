@@ -71,8 +71,18 @@ fn the_error_of_a_plain_number_has_no_unit() {
 fn a_negative_error_is_not_taken_for_an_option() {
     let bench = Bench::with(&[]);
     bench.put("crank.toml", CRANK);
-    let output =
-        bench.run(&["map", "crank.toml", "--over", "motor=0..30deg", "--of", "ratio", "--error", "-0.1", "-o", "x.json"]);
+    let output = bench.run(&[
+        "map",
+        "crank.toml",
+        "--over",
+        "motor=0..30deg",
+        "--of",
+        "ratio",
+        "--error",
+        "-0.1",
+        "-o",
+        "x.json",
+    ]);
     let text = String::from_utf8(output.stderr).unwrap();
     assert!(text.contains("the permitted error of `ratio` is not far above round-off"), "{text}");
 }

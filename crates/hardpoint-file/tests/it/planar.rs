@@ -59,7 +59,10 @@ fn a_misspelt_key_of_a_variable_in_both_axes_is_reported_once() {
     let text = format!("{}design.cx = {{ moov = \"C\", along = \"xy\" }}\n", six_lines());
     let Err(errors) = parse(&text, "planar.toml") else { panic!("accepted:\n{text}") };
     let messages: Vec<&str> = errors.list().iter().map(|d| d.message.as_str()).collect();
-    assert_eq!(messages, ["design variable `cx` has no `move`", "unknown key `moov` in design variable `cx`"]);
+    assert_eq!(
+        messages,
+        ["design variable `cx` has no `move`", "unknown key `moov` in design variable `cx`"]
+    );
 }
 
 #[test]
