@@ -104,7 +104,7 @@ describe('a hardpoint of the strut in the hand', () => {
       const { prototype: paper } = CanvasRenderingContext2D
       const { clear, drawArrays, drawElements, drawElementsInstanced } = scene
       const { clearRect } = paper
-      const count = { pictures: 0, calls: 0, plots: [] as string[] }
+      const count = { pictures: 0, calls: 0, plots: [] as string[], labels: [] as number[] }
       Object.assign(globalThis, { count })
       scene.clear = function (...args) {
         count.pictures++
@@ -127,12 +127,19 @@ describe('a hardpoint of the strut in the hand', () => {
         if (plot) count.plots.push(plot.querySelector('[data-testid=shown]')!.getAttribute('aria-pressed')!)
         clearRect.apply(this, args)
       }
+      const label = document.querySelector('[data-testid=drag-label]')!
+      new MutationObserver(() => count.labels.push(count.pictures)).observe(label, { childList: true, subtree: true })
     })
-    type Count = { pictures: number; calls: number; plots: string[] }
+    type Count = { pictures: number; calls: number; plots: string[]; labels: number[] }
     const count = () => page.evaluate(() => (globalThis as unknown as { count: Count }).count)
     const reset = () =>
       page.evaluate(() =>
-        Object.assign((globalThis as unknown as { count: Count }).count, { pictures: 0, calls: 0, plots: [] }),
+        Object.assign((globalThis as unknown as { count: Count }).count, {
+          pictures: 0,
+          calls: 0,
+          plots: [],
+          labels: [],
+        }),
       )
     /** Pictures and draw calls of one change, after which nothing moves. */
     const after = async (change: () => Promise<void>) => {
@@ -149,6 +156,8 @@ describe('a hardpoint of the strut in the hand', () => {
     await after(() => page.mouse.move(box.x + 9, box.y + 6))
     const dragged = await after(() => page.mouse.move(box.x + 9, box.y + 2))
     expect(dragged.pictures).toBe(1)
+    // The label changes with the picture: before it, it would cost a frame of its own.
+    expect(dragged.labels).toEqual([1])
     // Sensitivities are those of the last design until the hand lets go.
     expect(dragged.plots).toContain('false')
     expect(dragged.plots).not.toContain('true')
