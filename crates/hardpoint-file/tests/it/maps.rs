@@ -2,6 +2,7 @@
 
 use hardpoint::Analysis;
 use hardpoint::model::Model;
+use hardpoint::motion::StopKind;
 use hardpoint::run::Run;
 use hardpoint::topology::Formulation;
 use hardpoint_file::parse;
@@ -323,6 +324,28 @@ fn positions_that_are_not_reached_are_named() {
     let limit = (40.0_f64 / 50.0).asin();
     assert_eq!(drivers, [2.0]);
     assert!((last[0] - limit).abs() < 1e-3, "{last:?} {limit}");
+}
+
+#[test]
+fn of_several_drivers_the_one_that_moves_too_far_is_named() {
+    let text = SLIDER_CRANK.replace(
+        "[joints]",
+        "[joints]\nwheel = { type = \"revolute\", bodies = [\"ground\", \"wheel\"], at = \"A\", axis = \"z\" }",
+    );
+    let text = text.replace("[bodies]", "[bodies]\nwheel = {}");
+    let text = text.replace("[drivers]", "[drivers]\nspin = { joint = \"wheel\", law = \"t\" }");
+    let text = text.replace("[points]", "[points]\nrim = { body = \"wheel\", at = [9, 0, 0] }");
+    let of = [("rim.x", 1e-6)];
+    for over in [
+        &[("motor", [0.0, 0.1]), ("spin", [0.0, 1e9])][..],
+        &[("spin", [0.0, 1e9])],
+        &[("spin", [-1e300, 1e300])],
+    ] {
+        let model = model(&text);
+        let MapError::NotReached { stop, .. } = refused(&text, over, &of) else { panic!("{over:?}") };
+        let StopKind::TooFar { driver } = stop.kind else { panic!("{stop:?}") };
+        assert_eq!(model.drivers[driver.0].name, "spin");
+    }
 }
 
 #[test]

@@ -25,6 +25,8 @@ const SHORTEST: f64 = 1e-10;
 const MOST_STEPS: usize = 20_000;
 /// Maximum travel of a driver between two output times, rad or sizes, so that a diverging law ends the run.
 const FARTHEST: f64 = 1e5;
+/// Maximum resolution of a line, rad or sizes.
+const COARSEST: f64 = 1e-3;
 /// Maximum number of jumps of a law between two output times, since each jump is followed on its own.
 const MOST_JUMPS: usize = 1_000;
 /// Maximum number of jumps in a row: a law with more is faster than the resolution of times.
@@ -106,6 +108,10 @@ impl<'s, 'm> Walk<'s, 'm> {
         }
         match self.path {
             Path::Laws => self.look_for_poles(),
+            // The parameter of a line has no values for steps of the length that its start requires.
+            Path::Line { .. } if !(self.shortest * self.one.mechanism.unit_of(self.path) <= COARSEST) => {
+                Err(self.too_far())
+            }
             Path::Assembly | Path::Line { .. } => Ok(()),
         }
     }
@@ -189,7 +195,12 @@ impl<'s, 'm> Walk<'s, 'm> {
     /// Stop for the driver that goes furthest.
     fn too_far(&mut self) -> Box<Stop> {
         let Stepper { mechanism, lookahead, .. } = &*self.one;
-        let travel = |d: &usize| lookahead.travel[*d] / mechanism.driver_units[*d];
+        let of_driver = |d: usize| match self.path {
+            // One parameter moves all drivers.
+            Path::Assembly | Path::Line { .. } => mechanism.speed_along(self.path, 0, d).abs(),
+            Path::Laws => lookahead.travel[d],
+        };
+        let travel = |d: &usize| of_driver(*d) / mechanism.driver_units[*d];
         let furthest = (0..mechanism.drivers.len()).max_by(|a, b| travel(a).total_cmp(&travel(b)));
         self.stop(self.now(), StepRejection::TooFar { driver: furthest.unwrap_or(0) })
     }
