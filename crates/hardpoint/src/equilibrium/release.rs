@@ -69,14 +69,15 @@ pub(crate) fn release(
     drive_all(&mut open, &elastic_joints);
     // The rows of some joints do not belong to single directions, so that they are no cut ones.
     let uncut: Vec<JointId> = elastic_joints.iter().filter(|j| !j.2).map(|j| j.0).collect();
+    let all: Vec<JointId> = elastic_joints.iter().map(|j| j.0).collect();
     // Bodies that springs alone hold are placed by openings from ground.
-    let OpenTree { floating, .. } = open_tree(&open, &uncut);
+    let OpenTree { floating, .. } = open_tree(&open, &uncut, &all);
     for body in floating {
         float(&mut open, body);
     }
     drive_all(&mut open, &elastic_joints);
     // A joint that closes a loop of elastic joints leaves its directions to its force.
-    let OpenTree { cut, .. } = open_tree(&open, &uncut);
+    let OpenTree { cut, .. } = open_tree(&open, &uncut, &all);
     if let Some(joint) = uncut.iter().copied().find(|joint| cut[joint.0]) {
         return Err(elastic_loop(model, formulation, joint));
     }
@@ -168,7 +169,8 @@ fn choose(
             (released.joint, released.coordinate) = (joint, coordinate);
         }
     }
-    let mut topology = Topology::of_openings(&open, formulation)?;
+    let mut topology =
+        Topology::of_openings(&open, formulation).map_err(|error| error.without_openings(own))?;
     for (role, joint) in topology.roles.iter_mut().zip(&model.joints) {
         if *role == JointRole::Cut(CutReason::Requested) && !joint.cut {
             *role = JointRole::Cut(match formulation {

@@ -36,12 +36,14 @@ pub enum TopologyError {
         bodies: Vec<String>,
     },
     /// Over-driven: drivers prescribe more coordinates than there are degrees of freedom (HP0302).
-    #[error("{}", over_driven_text(.driver_names.len(), *.mobility))]
+    #[error("{}", over_driven_text(.driver_names.len(), .released_names, *.mobility))]
     OverDriven {
-        /// Contradicting drivers.
+        /// Contradicting drivers: those that are held, then those that an equilibrium releases.
         drivers: Vec<DriverId>,
-        /// Names, in the same order.
+        /// Names of those that are held, in the same order.
         driver_names: Vec<String>,
+        /// Names of those that an equilibrium releases, and for which no motion is left.
+        released_names: Vec<String>,
         /// Degrees of freedom that these drivers prescribe; other drivers may prescribe further ones.
         mobility: usize,
         /// Joints whose constraints fail.
@@ -71,10 +73,14 @@ pub enum TopologyError {
     },
 }
 
-fn over_driven_text(drivers: usize, mobility: usize) -> String {
+fn over_driven_text(drivers: usize, released: &[String], mobility: usize) -> String {
     let prescribe = if drivers == 1 { "driver prescribes" } else { "drivers prescribe" };
     let degrees = if mobility == 1 { "degree" } else { "degrees" };
-    format!("the mechanism is over-driven: {drivers} {prescribe} {mobility} {degrees} of freedom")
+    let left = match released.is_empty() {
+        true => String::new(),
+        false => format!(", which leaves none to the released {}", dozen(released)),
+    };
+    format!("the mechanism is over-driven: {drivers} {prescribe} {mobility} {degrees} of freedom{left}")
 }
 
 fn under_driven_text(freedom: usize, bodies: &[String], unconnected: &[String]) -> String {
@@ -96,7 +102,7 @@ fn elastic_loop_text(joint: &str, cut: &CutReason) -> String {
 }
 
 /// Joins names with commas. A longer list is cut after twelve names, with the number of the others.
-fn dozen(names: &[String]) -> String {
+fn dozen(names: &[impl AsRef<str>]) -> String {
     some_of(names, ", ", 12)
 }
 
@@ -110,6 +116,18 @@ impl TopologyError {
             Self::Singular { .. } => "HP0304",
             Self::ElasticLoop { .. } => "HP0306",
         }
+    }
+
+    /// The error without the openings of elastic joints, which are drivers from `first` on.
+    pub(crate) fn without_openings(mut self, first: DriverId) -> Self {
+        if let Self::OverDriven { drivers, driver_names, mobility, .. } = &mut self {
+            let held = driver_names.len();
+            let own = drivers[..held].partition_point(|d| *d < first);
+            driver_names.truncate(own);
+            drivers.drain(own..held);
+            *mobility = mobility.saturating_sub(held - own);
+        }
+        self
     }
 
     /// Returns the notes: facts about the error.
@@ -137,10 +155,13 @@ impl TopologyError {
                 ),
                 format!("joints of that motion: {}", dozen(joint_names)),
             ],
-            Self::OverDriven { driver_names, joint_names, .. } => vec![
-                format!("contradicting drivers: {}", dozen(driver_names)),
-                format!("constraints that fail: {}", dozen(joint_names)),
-            ],
+            Self::OverDriven { driver_names, released_names, joint_names, .. } => {
+                let all: Vec<&String> = driver_names.iter().chain(released_names).collect();
+                vec![
+                    format!("contradicting drivers: {}", dozen(&all)),
+                    format!("constraints that fail: {}", dozen(joint_names)),
+                ]
+            }
             Self::Immovable { joint_names, .. } => {
                 vec![format!("constraints that fail with any motion: {}", dozen(joint_names))]
             }
@@ -166,8 +187,9 @@ impl TopologyError {
             }
             Self::Singular { .. } => "move the design configuration a little along its motion, away from the position in which its links line up; if the mechanism moves only because of its special proportions, add a driver on one of these joints"
                 .into(),
-            Self::OverDriven { driver_names, mobility, .. } => {
-                let excess = match driver_names.len().saturating_sub(*mobility) {
+            Self::OverDriven { driver_names, released_names, mobility, .. } => {
+                let all = driver_names.len() + released_names.len();
+                let excess = match all.saturating_sub(*mobility) {
                     0 | 1 => "one".into(),
                     n => n.to_string(),
                 };
@@ -296,11 +318,11 @@ pub(super) fn contradiction(
     }
     // Each independent contradiction is one driver too many, of those that contradict each other.
     let excess = model.drivers.len() - topology.mobility;
-    TopologyError::OverDriven {
-        mobility: drivers.len().saturating_sub(excess),
-        driver_names: drivers.iter().map(|d| format!("`{}`", model.drivers[d.0].name)).collect(),
-        drivers,
-        joints,
-        joint_names,
-    }
+    let mobility = drivers.len().saturating_sub(excess);
+    let is_released = |d: &DriverId| model.equilibrium.iter().any(|e| e.released.contains(d));
+    let (released, mut drivers): (Vec<DriverId>, Vec<DriverId>) = drivers.into_iter().partition(is_released);
+    let names = |of: &[DriverId]| of.iter().map(|d| format!("`{}`", model.drivers[d.0].name)).collect();
+    let (driver_names, released_names) = (names(&drivers), names(&released));
+    drivers.extend(released);
+    TopologyError::OverDriven { drivers, driver_names, released_names, mobility, joints, joint_names }
 }

@@ -41,9 +41,11 @@ pub(crate) struct Dependence {
 /// coordinates of the link, and the entry without dimension.
 pub(crate) type TreeRow = Vec<(BodyId, usize, f64)>;
 
-/// Returns the tree of a mechanism in relative coordinates, with these joints in it if there is room for them.
-pub(crate) fn open_tree(model: &Model, preferred: &[JointId]) -> OpenTree {
-    let topology = choose_tree(model, Formulation::Relative, preferred);
+/// Returns the tree of a mechanism in relative coordinates, with these joints in it if there is room for them. Of
+/// joints with the same number of unknowns, elastic ones come first: their openings are then coordinates of their own,
+/// and not differences of large ones, in which a soft motion would be a bend along a stiff direction.
+pub(crate) fn open_tree(model: &Model, preferred: &[JointId], elastic: &[JointId]) -> OpenTree {
+    let topology = choose_tree(model, Formulation::Relative, preferred, elastic);
     OpenTree {
         cut: topology.roles.iter().map(|role| matches!(role, JointRole::Cut(_))).collect(),
         floating: topology.links.iter().filter(|l| l.joint.is_none()).map(|l| l.child).collect(),
@@ -58,7 +60,7 @@ pub(crate) fn open_tree(model: &Model, preferred: &[JointId]) -> OpenTree {
 /// which it would stop following where all is in line. A released driver is an unknown coordinate like the others, or
 /// at a cut joint nothing at all: which one the user released does not matter.
 pub(crate) fn dependence(model: &Model, first: DriverId, at: Option<&[TreeRow]>) -> Dependence {
-    let mut topology = choose_tree(model, Formulation::Relative, &[]);
+    let mut topology = choose_tree(model, Formulation::Relative, &[], &[]);
     size::measure(model, &mut topology);
     let released = model.equilibrium.as_ref().map_or(&[][..], |equilibrium| &equilibrium.released);
     // Those of cut joints have rows, which hold nothing.

@@ -10,7 +10,7 @@ impl Topology {
     /// # Errors
     /// A [`TopologyError`] if motions remain free, if drivers are too many, or if the design configuration is singular.
     pub fn of(model: &Model, formulation: Formulation) -> Result<Self, TopologyError> {
-        let mut topology = tree::choose_tree(model, formulation, &[]);
+        let mut topology = tree::choose_tree(model, formulation, &[], &[]);
         size::measure(model, &mut topology);
         blocks::split(model, &mut topology)?;
         mobility::examine(model, &mut topology)?;

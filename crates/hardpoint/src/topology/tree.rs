@@ -20,8 +20,13 @@ const REQUESTED_CUT: usize = 6;
 type DriversOf = Vec<Vec<(DriverId, Option<usize>)>>;
 
 /// Chooses the tree and lists links, coordinates and closures. Blocks are assigned later. `preferred` are joints that
-/// are in the tree if a tree has room for them.
-pub(super) fn choose_tree(model: &Model, formulation: Formulation, preferred: &[JointId]) -> Topology {
+/// are in the tree if a tree has room for them; of joints with the same number of unknowns, `favoured` ones come first.
+pub(super) fn choose_tree(
+    model: &Model,
+    formulation: Formulation,
+    preferred: &[JointId],
+    favoured: &[JointId],
+) -> Topology {
     let mut topology = Topology {
         formulation,
         links: Vec::new(),
@@ -39,7 +44,7 @@ pub(super) fn choose_tree(model: &Model, formulation: Formulation, preferred: &[
     for (k, d) in model.drivers.iter().enumerate() {
         drivers_of[d.joint.0].push((DriverId(k), model.driven(d).freedom));
     }
-    let paths = add_links(model, &drivers_of, preferred, &mut topology);
+    let paths = add_links(model, &drivers_of, [preferred, favoured], &mut topology);
     add_closures(model, &drivers_of, &paths, &mut topology);
     couple_rows(model, &mut topology);
     topology
@@ -63,16 +68,16 @@ fn roles_outside_tree(model: &Model, formulation: Formulation) -> Vec<JointRole>
 fn add_links(
     model: &Model,
     drivers_of: &DriversOf,
-    preferred: &[JointId],
+    [preferred, favoured]: [&[JointId]; 2],
     topology: &mut Topology,
 ) -> Vec<PathToGround> {
     let mut depth: Vec<Option<usize>> = vec![None; model.bodies.len()];
-    let mut reachable = Reachable::new(model, drivers_of, topology.formulation, preferred);
+    let mut reachable = Reachable::new(model, drivers_of, topology.formulation, [preferred, favoured]);
     let mut first_orphan = 0;
     reachable.place(&mut depth, GROUND, 0);
     loop {
         match reachable.next(&depth) {
-            Some(Candidate { unknowns, depth: parent_depth, joint, parent_end }) => {
+            Some(Candidate { unknowns, depth: parent_depth, joint, parent_end, .. }) => {
                 let bodies = model.joints[joint].bodies;
                 let (parent, child) = (bodies[parent_end], bodies[1 - parent_end]);
                 topology.roles[joint] = JointRole::Tree { child, unknowns };
@@ -156,6 +161,8 @@ fn couple_rows(model: &Model, topology: &mut Topology) {
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Candidate {
     unknowns: usize,
+    /// False comes first.
+    is_ordinary: bool,
     /// Depth of the body that is already placed.
     depth: usize,
     joint: usize,
@@ -168,6 +175,7 @@ struct Reachable<'m> {
     /// Joints with a tree form of each body, with the number of unknowns that each would leave, and the end on the
     /// body.
     joints_of: Vec<Vec<(usize, usize, usize)>>,
+    favoured: &'m [JointId],
     candidates: BinaryHeap<Reverse<Candidate>>,
 }
 
@@ -176,7 +184,7 @@ impl<'m> Reachable<'m> {
         model: &'m Model,
         drivers_of: &DriversOf,
         formulation: Formulation,
-        preferred: &[JointId],
+        [preferred, favoured]: [&'m [JointId]; 2],
     ) -> Self {
         let mut joints_of = vec![Vec::new(); model.bodies.len()];
         if formulation == Formulation::Relative {
@@ -195,14 +203,15 @@ impl<'m> Reachable<'m> {
                 }
             }
         }
-        Self { model, joints_of, candidates: BinaryHeap::new() }
+        Self { model, joints_of, favoured, candidates: BinaryHeap::new() }
     }
 
     /// Marks a body as placed, and adds the joints to its neighbours.
     fn place(&mut self, depth: &mut [Option<usize>], body: BodyId, at: usize) {
         depth[body.0] = Some(at);
         for &(joint, unknowns, parent_end) in &self.joints_of[body.0] {
-            self.candidates.push(Reverse(Candidate { unknowns, depth: at, joint, parent_end }));
+            let is_ordinary = !self.favoured.contains(&JointId(joint));
+            self.candidates.push(Reverse(Candidate { unknowns, is_ordinary, depth: at, joint, parent_end }));
         }
     }
 
