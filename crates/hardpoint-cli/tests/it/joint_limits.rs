@@ -45,7 +45,7 @@ fn an_end_stop_ends_the_run_with_5_and_keeps_what_was_solved() {
     assert_eq!(output.status.code(), Some(5));
     let err = String::from_utf8_lossy(&output.stderr).into_owned();
     let sentence =
-        "warning[HP0268]: `slide.displacement` reaches its maximum at t = 0.228396 s, which ends the motion";
+        "warning[HP0268]: `slide.displacement` reaches its maximum at t = 0.2283956 s, which ends the motion";
     assert!(err.contains(sentence), "{err}");
     assert!(
         err.contains("its maximum is 30 mm; it is reached at t = 0.2283956 s, with crank -41.111 deg"),
@@ -58,8 +58,5 @@ fn an_end_stop_ends_the_run_with_5_and_keeps_what_was_solved() {
     let output = bench.run(&["run", "press.toml"]);
     assert_eq!(output.status.code(), Some(5));
     let err = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(
-        err.contains("error[HP0267]: `slide.displacement` is beyond its minimum at t = 0.000000 s"),
-        "{err}"
-    );
+    assert!(err.contains("error[HP0267]: `slide.displacement` is beyond its minimum at t = 0 s"), "{err}");
 }

@@ -641,6 +641,54 @@ at = [0, 1]
 }
 
 #[test]
+fn stiffnesses_of_bushings_and_elastic_joints_have_one_rule() {
+    let text = |force: &str| {
+        format!(
+            r#"
+name = "stiffnesses"
+units = {{ length = "mm", angle = "deg" }}
+bodies = {{ arm = {{}} }}
+joints.A = {{ type = "spherical", bodies = ["ground", "arm"], at = [0, 0, 0] }}
+forces.f = {force}
+drivers = {{ x = {{ body = "arm", about = "x", law = "0" }}, y = {{ body = "arm", about = "y", law = "0" }}, z = {{ body = "arm", about = "z", law = "0" }} }}
+time = {{ at = [0, 1] }}
+"#
+        )
+    };
+    let bushing = |keys: &str| {
+        text(&format!(
+            "{{ type = \"bushing\", from = {{ body = \"ground\", at = [0, 0, 0] }}, to = {{ body = \"arm\", at = [0, 0, 0] }}, {keys} }}"
+        ))
+    };
+    let joint = |keys: &str| text(&format!("{{ type = \"elastic_joint\", joint = \"A\", {keys} }}"));
+    let error = |text: &str| {
+        let errors = parse(text, "stiffnesses.toml").err().unwrap_or_else(|| panic!("{text}"));
+        let [error] = errors.list() else { panic!("{errors}") };
+        assert_eq!(error.code, "HP0252");
+        error.message.clone()
+    };
+    let coupled = |k: f64| {
+        let row = |r: usize| match r {
+            0 => format!("[0, {k}, 0, 0, 0, 0]"),
+            1 => format!("[{k}, 0, 0, 0, 0, 0]"),
+            _ => "[0, 0, 0, 0, 0, 0]".into(),
+        };
+        format!("x = 100, y = 100, z = 100, matrix = [{}]", [0, 1, 2, 3, 4, 5].map(row).join(", "))
+    };
+    for keys in ["x = -1, y = 1, z = 1", "x = 1, y = 1, z = 1, about_y = -2"] {
+        let key = if keys.contains("about_y") { "about_y" } else { "x" };
+        assert_eq!(error(&bushing(keys)), format!("stiffness `{key}` of `f` is negative"));
+        assert_eq!(error(&joint(keys)), format!("stiffness `{key}` of `f` is not positive"));
+    }
+    assert_eq!(error(&bushing(&coupled(101.0))), "the stiffness matrix of `f` is not positive semidefinite");
+    assert_eq!(error(&joint(&coupled(101.0))), "the stiffness matrix of `f` is not positive definite");
+    // A bushing may be free in a direction.
+    for keys in ["x = 0, y = 1, z = 0, about_y = 0".to_owned(), coupled(100.0), coupled(-99.0)] {
+        assert!(parse(&bushing(&keys), "stiffnesses.toml").is_ok(), "{keys}");
+    }
+}
+
+#[test]
 fn a_compliance_without_a_value_has_no_derivatives() {
     let model = model_of(
         r#"

@@ -64,6 +64,15 @@ fn alone(laws: [&str; 2], time: &str) -> Model {
 }
 
 #[test]
+fn names_of_cases_differ_in_more_than_capital_letters() {
+    let text = MODEL.replace("[cases.both]", "[cases.Turn]");
+    let Err(errors) = parse(&text, "cases.toml") else { panic!("two cases of one folder") };
+    let [error] = errors.list() else { panic!("{errors}") };
+    assert_eq!(error.code, "HP0201");
+    assert_eq!(error.message, "cases `turn` and `Turn` differ in capital letters only");
+}
+
+#[test]
 fn a_case_is_the_motion_of_its_laws_at_its_times() {
     let file = parse(MODEL, "cases.toml").unwrap_or_else(|e| panic!("{e}"));
     let model = &file.model;

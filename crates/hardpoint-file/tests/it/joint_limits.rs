@@ -340,7 +340,7 @@ fn a_motion_that_begins_beyond_its_stop_solves_nothing_and_reports_the_limit() {
     assert_eq!(stop.kind, StopKind::JointLimit { limit: 0, end: LimitEnd::Min, begins_beyond: true });
     assert_eq!((solution.motion.len(), stop.last_time, stop.code()), (0, None, "HP0267"));
     let text = stop.headline(&model);
-    assert_eq!(text, "`slide.displacement` is beyond its minimum at t = 0.000000 s");
+    assert_eq!(text, "`slide.displacement` is beyond its minimum at t = 0 s");
 }
 
 #[test]

@@ -661,6 +661,19 @@ fn laws_without_end_are_refused_in_time() {
 }
 
 #[test]
+fn the_time_at_which_a_motion_of_microseconds_ends_has_its_digits() {
+    let slow = four_bar([0.5, 0.5, 0.3, 0.6], 60.0, "300*t", 1.0);
+    let fast = four_bar([0.5, 0.5, 0.3, 0.6], 60.0, "300e6*t", 1e-6);
+    let [slow, fast] = [&slow, &fast].map(|model| {
+        let stop = run(model, spaced(model, 10)).stop.expect("the crank cannot turn fully");
+        (stop.failed_time, stop.headline(model))
+    });
+    let time = format!("{:.6e}", fast.0).parse::<f64>().unwrap();
+    assert!((fast.0 / slow.0 - 1e-6).abs() < 1e-12 && time > 0.0, "{slow:?} {fast:?}");
+    assert_eq!(fast.1, format!("the mechanism cannot move beyond t = {time:e} s"));
+}
+
+#[test]
 fn a_law_may_turn_back_next_to_a_limit() {
     // The crank reaches a limit; a law turns back before it, or just beyond.
     let limit = |law: &str| four_bar([1.0, 1.3, 1.0, 2.5], 40.0, law, 2.0);

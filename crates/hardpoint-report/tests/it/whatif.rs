@@ -317,7 +317,7 @@ fn a_changed_design_that_locks_has_gaps_and_the_page_has_the_reason() {
     }
     assert!(!page.status.complete);
     let expected = format!(
-        "The changed design was solved for {solved} of {all} steps: the mechanism cannot move beyond t = 0.720265 s, with `motor` at 259.3 deg (HP0401). Today's design: all {all} steps were solved."
+        "The changed design was solved for {solved} of {all} steps: the mechanism cannot move beyond t = 0.7202652 s, with `motor` at 259.3 deg (HP0401). Today's design: all {all} steps were solved."
     );
     assert_eq!(page.status.message, expected);
 

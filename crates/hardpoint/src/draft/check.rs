@@ -20,14 +20,14 @@ mod sweeping;
 mod tolerancing;
 mod wheels;
 
-pub(crate) use elements::{CheckElement, ElementCheck};
+pub(crate) use elements::{CheckElement, ElementCheck, StiffnessRule};
 pub use formulas::{ConstantError, Nominal};
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use crate::draft::{
-    DirectionDraft, Draft, DraftError, DraftLocation, FormulaOf, FrameDraft, LocationDraft, PointRef,
-    Section, did_you_mean,
+    CaseDraft, DirectionDraft, Draft, DraftError, DraftLocation, FormulaOf, FrameDraft, LocationDraft,
+    PointRef, Section, did_you_mean,
 };
 use crate::expression::Expression;
 use crate::model::element::Compliance;
@@ -436,6 +436,7 @@ impl<'a> Checker<'a> {
                 }
             }
         }
+        self.check_folders();
         for (index, h) in d.hardpoints.iter().enumerate() {
             let at = Here { section: Section::Hardpoints, index }.key("position");
             self.check_lengths(&format!("a coordinate of hardpoint `{}`", h.name), h.position.to_array(), at);
@@ -444,6 +445,22 @@ impl<'a> Checker<'a> {
             let at = Here { section: Section::Bodies, index: 0 }.key("");
             self.fault("HP0203", at, "the model has no bodies")
                 .help("declare at least one body besides `ground`");
+        }
+    }
+
+    /// HP0201: names of cases that differ in capital letters only.
+    fn check_folders(&mut self) {
+        let cases = &self.draft.cases;
+        for (index, case) in cases.iter().enumerate() {
+            let is_other =
+                |c: &&CaseDraft| c.name != case.name && c.name.to_lowercase() == case.name.to_lowercase();
+            let Some(other) = cases[..index].iter().find(is_other) else { continue };
+            let message =
+                format!("cases `{}` and `{}` differ in capital letters only", other.name, case.name);
+            let at = Here { section: Section::Cases, index }.key("name");
+            self.fault("HP0201", at, message)
+                .note("results of a case are in a folder of its name, and some file systems ignore the difference")
+                .help("give one of them another name");
         }
     }
 

@@ -173,6 +173,11 @@ pub(crate) fn short(x: f64) -> String {
     if is_plain { x.to_string() } else { format!("{x:e}") }
 }
 
+/// Number of a message with that many significant digits at most.
+pub(crate) fn with_digits(x: f64, digits: usize) -> String {
+    short(format!("{x:.*e}", digits - 1).parse().unwrap_or(x))
+}
+
 /// Joins items with a separator. A longer list is cut after `most` items, with the number of the others.
 pub fn some_of(items: &[impl AsRef<str>], separator: &str, most: usize) -> String {
     let shown: Vec<&str> = items.iter().take(most).map(AsRef::as_ref).collect();

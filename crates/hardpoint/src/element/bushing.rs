@@ -1,6 +1,6 @@
 //! Bushing: springs and dampers between two bodies at a place.
 
-use crate::draft::{CheckElement, ElementCheck};
+use crate::draft::{CheckElement, ElementCheck, StiffnessRule};
 use crate::load::{AppliedLoads, ForceFormula};
 use crate::model::element::{ActsOn, Bushing, Compliance, ForceProperties, Properties, StiffnessEntry};
 use crate::model::{Dimension, ElementId, Model};
@@ -58,6 +58,7 @@ impl CheckElement for Bushing {
         }
         c.check_axes([self.axis, self.axis2]);
         self.check_across(c);
+        c.check_stiffness(&self.law(), StiffnessRule::NotNegative);
         c.check_curves(&self.law());
     }
 }

@@ -1,11 +1,10 @@
 //! Joint that gives along its own axes.
 
-use crate::draft::{CheckElement, ElementCheck};
+use crate::draft::{CheckElement, ElementCheck, StiffnessRule};
 use crate::joint::{DIRECTION_NAMES, DIRECTIONS, Need, free_directions, sprung_directions};
-use crate::linalg::semidefinite::is_definite;
 use crate::load::{AppliedLoads, ForceFormula};
 use crate::model::element::{ActsOn, CURVES, Compliance, ElasticJoint, ForceProperties, Properties};
-use crate::model::{Dimension, ElementId, Joint, Model, NumberId};
+use crate::model::{Dimension, ElementId, Joint, Model};
 use crate::number;
 use crate::space::{Real, Wrench};
 
@@ -34,37 +33,6 @@ const PRELOADS: [&str; DIRECTIONS] =
     ["preload_x", "preload_y", "preload_z", "preload_about_x", "preload_about_y", "preload_about_z"];
 
 impl ElasticJoint {
-    /// HP0252: stiffnesses that are not positive, or a matrix that is not positive definite.
-    fn check_stiffness(&self, c: &mut ElementCheck<'_, '_>) {
-        let law = self.law();
-        let gives = law.gives();
-        let value = |n: NumberId| c.value(n);
-        // Curves may have any slope in the design configuration.
-        let is_linear = |k: &usize| gives[*k] && law.directions[*k].curve.is_none();
-        let linear: Vec<usize> = (0..DIRECTIONS).filter(is_linear).collect();
-        let stiffness = |r: usize, k: usize| law.stiffnesses(r, k).map(value).sum();
-        let row = |r: &usize| linear.iter().map(|k| stiffness(*r, *k)).collect();
-        let matrix: Vec<Vec<f64>> = linear.iter().map(row).collect();
-        let is_given = |k: &usize| law.directions[*k].stiffness.is_none_or(|n| value(n) > 0.0);
-        if let Some(k) = (0..DIRECTIONS).find(|k| !is_given(k)) {
-            let key = DIRECTION_NAMES[k];
-            let message = format!("stiffness `{key}` of `{}` is not positive", c.name);
-            let help = match law.directions[k].curve {
-                Some(_) => format!(
-                    "give a positive stiffness, or remove `{key}`: the direction then deflects by `{}` alone",
-                    CURVES[k]
-                ),
-                None => format!("give a positive stiffness, or remove `{key}` to make that direction rigid"),
-            };
-            c.fault("HP0252", key, message).help(help);
-        } else if self.matrix.is_some() && !is_definite(&matrix) {
-            let message = format!("the stiffness matrix of `{}` is not positive definite", c.name);
-            c.fault("HP0252", "matrix", message)
-                .note("it counts with the stiffnesses along and about single axes on its diagonal")
-                .help("increase the diagonal, or reduce the entries beside it");
-        }
-    }
-
     /// HP0252: forces along directions in which the joint is rigid, and so has no displacement.
     fn check_rigid(&self, c: &mut ElementCheck<'_, '_>) {
         let law = self.law();
@@ -138,7 +106,7 @@ impl CheckElement for ElasticJoint {
             c.fault("HP0251", "type", message)
                 .help("give it a stiffness along or about one of its axes, or remove it");
         } else {
-            self.check_stiffness(c);
+            c.check_stiffness(&self.law(), StiffnessRule::Positive);
             self.check_rigid(c);
         }
         self.check_across(c);

@@ -37,6 +37,18 @@ pub fn root(a: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
     Some(l)
 }
 
+/// True if A is positive semidefinite, whatever the units of its rows; a row of zeros counts as such.
+pub fn is_semidefinite(a: &[Vec<f64>]) -> bool {
+    let rows: Vec<usize> = (0..a.len()).filter(|&r| a[r].iter().any(|x| *x != 0.0)).collect();
+    // NaN is not positive.
+    if !rows.iter().all(|&k| a[k][k] > 0.0) {
+        return false;
+    }
+    let scaled = |r: usize, k: usize| a[r][k] / (a[r][r].sqrt() * a[k][k].sqrt());
+    let scaled: Vec<Vec<f64>> = rows.iter().map(|&r| rows.iter().map(|&k| scaled(r, k)).collect()).collect();
+    root(&scaled).is_some()
+}
+
 /// True if A is positive definite, whatever the units of its rows: scaled to ones on its diagonal, its root has all its
 /// pivots.
 pub fn is_definite(a: &[Vec<f64>]) -> bool {

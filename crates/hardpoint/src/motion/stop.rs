@@ -1,11 +1,15 @@
 //! Reason why a motion ended before its last output time.
 
+use crate::draft::with_digits;
 use crate::joint::Quantity;
 use crate::model::{BodyId, DriverId, ElementId, HardpointId, JointId, LimitEnd, Model};
 use crate::space::Vec3;
 use crate::topology::BlockId;
 
 use super::gap::{Gap, SINGULAR_DRAWING};
+
+/// Significant digits of times and of parts of loads in messages.
+const TIME_DIGITS: usize = 7;
 
 /// End of a run before its last output time. The results up to there are kept.
 #[derive(Clone, Debug, PartialEq)]
@@ -216,14 +220,14 @@ impl Stop {
 
     /// The headline.
     pub fn headline(&self, model: &Model) -> String {
-        let t = self.failed_time;
+        let t = with_digits(self.failed_time, TIME_DIGITS);
         if self.last_time.is_none() && matches!(self.kind, StopKind::Limit | StopKind::BranchChange) {
-            return format!("the mechanism does not reach its start position at t = {t:.6} s");
+            return format!("the mechanism does not reach its start position at t = {t} s");
         }
         match self.kind {
-            StopKind::Limit => format!("the mechanism cannot move beyond t = {t:.6} s"),
-            StopKind::CurveEnd { .. } => format!("{} at t = {t:.6} s", self.happened(model)),
-            StopKind::BranchChange => format!("the mechanism passes a dead point at t = {t:.6} s"),
+            StopKind::Limit => format!("the mechanism cannot move beyond t = {t} s"),
+            StopKind::CurveEnd { .. } => format!("{} at t = {t} s", self.happened(model)),
+            StopKind::BranchChange => format!("the mechanism passes a dead point at t = {t} s"),
             StopKind::DoesNotAssemble => match self.remains.first() {
                 Some(gap) => format!("the mechanism does not assemble: {} stays open", gap.of.name(model)),
                 None => "the mechanism does not assemble".into(),
@@ -236,19 +240,19 @@ impl Stop {
             }
             StopKind::Locked { joint, .. } => {
                 format!(
-                    "the mechanism locks at t = {t:.6} s: joint `{}` cannot stay closed",
+                    "the mechanism locks at t = {t} s: joint `{}` cannot stay closed",
                     model.joints[joint.0].name
                 )
             }
             StopKind::LawNotFinite { driver } => {
                 format!(
-                    "the law of driver `{}` has no finite value at t = {t:.6} s",
+                    "the law of driver `{}` has no finite value at t = {t} s",
                     model.drivers[driver.0].name
                 )
             }
             StopKind::LoadNotFinite { force } => {
                 format!(
-                    "the law of force `{}` has no finite value at t = {t:.6} s",
+                    "the law of force `{}` has no finite value at t = {t} s",
                     model.elements[force.0].name
                 )
             }
@@ -260,28 +264,27 @@ impl Stop {
             }
             StopKind::TooFar { driver } => {
                 format!(
-                    "driver `{}` moves too far between two output times to be followed, from t = {t:.6} s on",
+                    "driver `{}` moves too far between two output times to be followed, from t = {t} s on",
                     model.drivers[driver.0].name
                 )
             }
             StopKind::JointLimit { .. } => {
                 let at = if self.begins_beyond_limit() { "" } else { ", which ends the motion" };
-                format!("{} at t = {t:.6} s{at}", self.happened(model))
+                format!("{} at t = {t} s{at}", self.happened(model))
             }
-            StopKind::Interrupted => format!("interrupted at t = {t:.6} s"),
+            StopKind::Interrupted => format!("interrupted at t = {t} s"),
             StopKind::NothingHolds { direction } => format!("nothing holds {}", direction.words(model)),
             StopKind::LimitLoad { part } => {
+                let part = with_digits(part, TIME_DIGITS);
                 let snaps = self.in_words_if_it_snaps();
-                format!(
-                    "beyond {part:.6} of the loads at t = {t:.6} s there is no equilibrium near by{snaps}"
-                )
+                format!("beyond {part} of the loads at t = {t} s there is no equilibrium near by{snaps}")
             }
             StopKind::NoEquilibrium => {
                 let snaps = self.in_words_if_it_snaps();
-                format!("beyond t = {t:.6} s there is no equilibrium near by{snaps}")
+                format!("beyond t = {t} s there is no equilibrium near by{snaps}")
             }
             StopKind::Unstable { direction } => {
-                format!("the equilibrium becomes unstable at t = {t:.6} s along {}", direction.words(model))
+                format!("the equilibrium becomes unstable at t = {t} s along {}", direction.words(model))
             }
             StopKind::TooStiff { direction } => format!(
                 "the equilibrium cannot be solved: the stiffness of {} is too large beside the others",

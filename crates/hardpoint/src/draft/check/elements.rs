@@ -1,7 +1,8 @@
 //! Checks of masses and forces: references and parameters.
 
 use crate::draft::{DraftError, ElementDraft, NumberDraft, Section, TablePointDraft};
-use crate::joint::{DIRECTION_NAMES, Quantity};
+use crate::joint::{DIRECTION_NAMES, DIRECTIONS, Quantity};
+use crate::linalg::semidefinite::{is_definite, is_semidefinite};
 use crate::model::element::{
     CURVES, CoupledStiffness, ElasticLaw, Elasticity, JointFriction, SCALES, StiffnessEntry,
 };
@@ -136,6 +137,15 @@ macro_rules! in_checks {
 }
 elements!(in_checks);
 
+/// Rule of the stiffnesses of an elastic law.
+#[derive(Clone, Copy)]
+pub(crate) enum StiffnessRule {
+    /// A direction without a stiffness is rigid, so that one of 0 would hold nothing.
+    Positive,
+    /// A direction without a stiffness is free: 0 is the same.
+    NotNegative,
+}
+
 /// Check of one element.
 pub(crate) struct ElementCheck<'c, 'd> {
     check: &'c mut Checker<'d>,
@@ -192,6 +202,47 @@ impl ElementCheck<'_, '_> {
                 }
             }
             (Some(_) | None, None) => {}
+        }
+    }
+
+    /// HP0252: stiffnesses that break the rule, or a matrix that is not positive definite, or semidefinite where the
+    /// stiffnesses may be zero.
+    pub fn check_stiffness(&mut self, law: &ElasticLaw<'_>, rule: StiffnessRule) {
+        let gives = law.gives();
+        // Curves may have any slope in the design configuration.
+        let is_linear = |k: &usize| gives[*k] && law.directions[*k].curve.is_none();
+        let linear: Vec<usize> = (0..DIRECTIONS).filter(is_linear).collect();
+        let stiffness = |r: usize, k: usize| law.stiffnesses(r, k).map(|n| self.value(n)).sum();
+        let row = |r: &usize| linear.iter().map(|k| stiffness(*r, *k)).collect();
+        let matrix: Vec<Vec<f64>> = linear.iter().map(row).collect();
+        let keeps = |n: NumberId| match rule {
+            StiffnessRule::Positive => self.value(n) > 0.0,
+            StiffnessRule::NotNegative => self.value(n) >= 0.0,
+        };
+        let bad = (0..DIRECTIONS).find(|k| !law.directions[*k].stiffness.is_none_or(keeps));
+        let (is_valid, [adjective, of_matrix]) = match rule {
+            StiffnessRule::Positive => (is_definite(&matrix), ["not positive", "definite"]),
+            StiffnessRule::NotNegative => (is_semidefinite(&matrix), ["negative", "semidefinite"]),
+        };
+        if let Some(k) = bad {
+            let key = DIRECTION_NAMES[k];
+            let message = format!("stiffness `{key}` of `{}` is {adjective}", self.name);
+            let help = match (rule, law.directions[k].curve) {
+                (_, Some(_)) => format!(
+                    "give a positive stiffness, or remove `{key}`: the direction then deflects by `{}` alone",
+                    CURVES[k]
+                ),
+                (StiffnessRule::Positive, None) => {
+                    format!("give a positive stiffness, or remove `{key}` to make that direction rigid")
+                }
+                (StiffnessRule::NotNegative, None) => "give a positive stiffness, or 0".to_owned(),
+            };
+            self.fault("HP0252", key, message).help(help);
+        } else if law.coupled.is_some() && !is_valid {
+            let message = format!("the stiffness matrix of `{}` is not positive {of_matrix}", self.name);
+            self.fault("HP0252", "matrix", message)
+                .note("it counts with the stiffnesses along and about single axes on its diagonal")
+                .help("increase the diagonal, or reduce the entries beside it");
         }
     }
 

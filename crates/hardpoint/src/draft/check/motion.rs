@@ -1,6 +1,6 @@
 //! Checks of drivers and couplers, and of the coordinates that they name.
 
-use crate::draft::{CouplerKindDraft, DraftLocation, Section, short};
+use crate::draft::{CouplerKindDraft, DraftLocation, Section, short, with_digits};
 use crate::joint;
 use crate::joint::CoordinateType;
 use crate::law::Law;
@@ -143,7 +143,7 @@ impl Checker<'_> {
                     format!(
                         "its values {} at t = {} s",
                         if end < t { "end" } else { "begin" },
-                        tenth_digit(end)
+                        with_digits(end, 10)
                     ),
                     "change the law, or the times, so that it has a value at each of them".to_owned(),
                 ),
@@ -243,11 +243,6 @@ impl Checker<'_> {
         });
         terms.into_iter().collect()
     }
-}
-
-/// A number with ten digits: laws overlap their ends by round-off.
-fn tenth_digit(x: f64) -> String {
-    short(format!("{x:.9e}").parse().unwrap_or(x))
 }
 
 /// Time at which a law that is not finite at time t, but at another output time, begins or ends to be; to round-off.
