@@ -2,7 +2,7 @@ import { number } from '../format'
 
 /** Name of the design in messages of the engine; on a page it is the one in hand. */
 const SUBJECT = /^the changed design: /
-const LOCKS = /^the mechanism (?:cannot move beyond|locks at) t = ([\d.]+) s/
+const LOCKS = /^the mechanism (?:cannot move beyond|locks at) t = ([\d.]+(?:e-?\d+)?) s/
 /** Digits of the time at which a mechanism locks. */
 const DIGITS = 3
 
