@@ -1158,8 +1158,8 @@ fn a_load_without_a_value_between_output_times_is_named_with_its_time() {
     }
 }
 
-/// A crank next to its dead centre, which a small force turns by 50 deg against next to nothing, while the rubber at the
-/// other end of the rod is a million times as stiff: whichever joint of the loop is cut, steps are those of the turn.
+/// A crank next to its dead centre, which a small force turns by 50 deg against next to nothing, while the rubber at
+/// the other end of the rod is a million times as stiff: the rubber is not cut, and few steps are enough.
 #[test]
 fn a_soft_motion_beside_stiff_rubber_takes_few_steps() {
     let text = r#"
