@@ -267,6 +267,7 @@ impl<'p> Descent<'p> {
         let Some(mut solver) = self.solver(squares) else { return };
         let hands_over = self.here.has_only_squares();
         let begin = (self.at.clone(), self.here.clone(), self.best.clone(), search.work.clone());
+        let listed = search.iterations.len();
         let (mut patience, mut since) = (PATIENCE, (search.iterations.len(), self.best.objective()));
         loop {
             if hands_over && search.iterations.len() >= since.0 + patience {
@@ -300,6 +301,7 @@ impl<'p> Descent<'p> {
                 }
                 self.is_unfit = true;
                 (self.at, self.here, self.best, search.work) = begin.clone();
+                search.iterations.truncate(listed);
                 let Some(next) = self.solver(squares) else { return };
                 solver = next;
                 since = (search.iterations.len(), self.best.objective());

@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use crate::evaluation::{DesignEvaluation, Motions, StudyCost};
-use hardpoint::model::{Limit, LimitTarget, Metric, Model, OptimizationSettings, VariableId};
-use hardpoint::motion::StopKind;
+use hardpoint::model::{CurvePart, Limit, LimitTarget, Metric, Model, OptimizationSettings, VariableId};
+use hardpoint::motion::{Motion, StopKind};
 use hardpoint::number::Dual;
 use hardpoint::run::{MarginDerivatives, MetricParts, MetricUse, Solution, misfits, peaks};
 use hardpoint::sensitivity::Admissibility;
@@ -564,8 +564,7 @@ impl<'m> Problem<'m> {
         let value = &found.metrics[entry.motion][entry.metric];
         let (model, solution) = (self.motions.model(entry.motion), &found.solutions[entry.motion]);
         let Some(x) = value.value else {
-            let name = &model.metrics[entry.metric].name;
-            let why = format!("the motion does not reach the place where metric `{name}` is taken");
+            let why = without_value(&model.metrics[entry.metric], &solution.motion);
             return Err(Refusal { motion: Some(entry.motion), why, interrupted: false });
         };
         let d = self.searched(&value.d);
@@ -626,6 +625,29 @@ impl<'m> Problem<'m> {
             false => format!("metric `{metric}` has parts without value or derivative"),
         };
         Err(Refusal { motion: Some(motion), why, interrupted: false })
+    }
+}
+
+/// Reason why a metric has no value in a motion.
+fn without_value(metric: &Metric, motion: &Motion) -> String {
+    let name = &metric.name;
+    match metric.take.part() {
+        CurvePart::Path(_) if motion.len() == 1 => format!(
+            "metric `{name}` is taken along a path, and the motion has a single output time: give it more in \
+             `[time]`, or take its value or `rms_at_points`"
+        ),
+        CurvePart::Path(_) if metric.over.is_some() => {
+            format!("the abscissa of metric `{name}` does not move, or not within its window")
+        }
+        CurvePart::Path(_) | CurvePart::Extrema(_) | CurvePart::Ends => {
+            format!("the motion does not reach the window of metric `{name}`")
+        }
+        CurvePart::Place { .. } => {
+            format!("the motion does not reach the place where metric `{name}` is taken")
+        }
+        CurvePart::Points(_) => {
+            format!("the motion does not reach all points of the target of metric `{name}`")
+        }
     }
 }
 
@@ -727,6 +749,19 @@ mod tests {
         all.extend(point.limits.iter().map(|l| (l.exceeds, l.d.clone())));
         all.extend(point.spreads.iter().flat_map(|s| &s.ends).flat_map(rows));
         all
+    }
+
+    #[test]
+    fn a_path_with_one_output_time_is_named_as_the_reason() {
+        let mut model = Model::from_draft(&crank_rocker().times([0.5])).unwrap();
+        model.metrics = vec![four_bar().metrics.swap_remove(0)];
+        let goal = Goal { name: String::new(), metric: 0, target: None, weight: 1.0 };
+        let settings = OptimizationSettings { goals: vec![goal], ..OptimizationSettings::default() };
+        let models = model.motions();
+        let motions = Motions::of(&models, Formulation::Relative).unwrap();
+        let problem = Problem::new(&model, &motions, &settings);
+        let refusal = problem.at(Vec::new(), &mut StudyCost::default(), &|| true).unwrap_err();
+        assert!(refusal.why.contains("has a single output time"), "{}", refusal.why);
     }
 
     #[test]
