@@ -13,6 +13,9 @@ use super::data::Title;
 use super::model_file::ModelFile;
 use super::readings::{Readings, is_left_out, readings_at};
 
+/// Largest reading in standard deviations, or SI units without them: sums of squares remain numbers.
+const MOST_SIGMAS: f64 = 1e100;
+
 /// Contents of a measurement file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeasuredData {
@@ -225,7 +228,7 @@ impl ModelFile {
         Ok(given)
     }
 
-    /// HP0248, HP0249: readings of what is at rest, all with standard deviations or all alike.
+    /// HP0248, HP0249: readings of what is at rest, of finite squares, all with standard deviations or all alike.
     fn can_be_compared(&self, found: &MeasuredData, file: &str) -> Result<(), DataError> {
         let outputs = outputs(&self.model);
         let readings = &found.measurements.readings;
@@ -235,6 +238,17 @@ impl ModelFile {
                 format!("`{}` cannot be compared: it does not follow from positions alone", output.name);
             return Err(DataError::new("HP0248", message, "remove its column, or begin its title with `#`")
                 .note("every line is a posture with the positions of all drivers"));
+        }
+        // Without standard deviations the residuals are in SI units.
+        let size = |r: &Reading| r.value.abs() / r.sigma.unwrap_or(1.0);
+        if let Some(reading) = readings.iter().find(|r| !(size(r) <= MOST_SIGMAS)) {
+            let (output, line) = (&outputs[reading.output], found.lines[reading.posture]);
+            let message =
+                format!("`{file}`, line {line}: the reading of `{}` is too large to be fitted", output.name);
+            let most =
+                format!("the maximum is {MOST_SIGMAS:e} standard deviations, or SI units without them");
+            let help = "correct it, or leave its cell empty";
+            return Err(DataError::new("HP0249", message, help).note(most));
         }
         let Some(without) = readings.iter().find(|r| r.sigma.is_none()) else { return Ok(()) };
         let (name, line) = (&outputs[without.output].name, found.lines[without.posture]);

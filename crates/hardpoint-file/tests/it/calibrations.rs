@@ -755,6 +755,12 @@ const BROKEN: &[(&str, &str, &str, &[&str])] = &[
         &["line 3: `toe` has no standard"],
     ),
     (
+        "too large",
+        "spring_strut,toe,sigma toe\n0,1,0.1\n5,1e300,0.1\n",
+        "HP0249",
+        &["line 3: the reading of `toe` is too large", "leave its cell empty"],
+    ),
+    (
         "units without",
         "spring_strut,toe,half_track\n0,1,2\n",
         "HP0249",
