@@ -5,6 +5,8 @@ use std::sync::Arc;
 use bytemuck::{Pod, Zeroable};
 use hardpoint_tape::{LANES, Lanes};
 
+use crate::order::sort_by_number;
+
 /// Eight numbers, aligned for fast memory access.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C, align(64))]
@@ -64,7 +66,7 @@ pub(crate) fn merged_rows(own: &[f64], added: &[f64]) -> Vec<MergedRow> {
     };
     let all = (0..own.len()).map(MergedRow::Own).chain((0..added.len()).map(MergedRow::Added));
     let mut rows: Vec<MergedRow> = all.collect();
-    rows.sort_by(|a, b| time(a).total_cmp(&time(b)));
+    sort_by_number(&mut rows, time);
     rows.dedup_by(|b, a| time(b) == time(a));
     rows
 }

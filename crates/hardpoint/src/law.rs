@@ -39,6 +39,7 @@ pub use table::{SplineDegree, SplineEndRates, SplineEnds, Table};
 
 use crate::expression::{self, ExpressionError, Range, Stretch};
 use crate::number::{self, Dual, Interval, Jet, Real};
+use crate::order::sort_by_number;
 
 kinds! {
     formula: ExpressionLaw,
@@ -341,7 +342,7 @@ impl Law {
         let mut breaks = Vec::new();
         self.kind.find_breaks(from, to, &mut breaks);
         let mut sides: Vec<[f64; 2]> = breaks.into_iter().map(Break::sides).collect();
-        sides.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        sort_by_number(&mut sides, |side| side[0]);
         let mut begins = from;
         let mut whole: Option<Stretch> = None;
         for [before, after] in sides.into_iter().chain([[to; 2]]) {

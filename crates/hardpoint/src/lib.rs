@@ -220,6 +220,7 @@ pub mod measure;
 pub mod model;
 pub mod motion;
 pub mod number;
+mod order;
 pub mod run;
 pub mod sensitivity;
 pub mod space;

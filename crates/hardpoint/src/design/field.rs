@@ -3,6 +3,7 @@
 
 use crate::design::JointConstants;
 use crate::model::{DriverId, JointId, PointId};
+use crate::order::sort_by_index;
 use crate::space::{Real, Twist, Vec3};
 
 /// First-order change of a design per unit of one variable: the paper's design velocity, with V and R(theta) U of a
@@ -77,7 +78,8 @@ impl DesignVelocity {
 
     /// Merges equal parameters of laws, and sorts them by driver and parameter.
     pub(crate) fn with_laws_in_order(mut self) -> Self {
-        self.laws.sort_by_key(|(driver, parameter, _)| (*driver, *parameter));
+        sort_by_index(&mut self.laws, |(_, parameter, _)| *parameter);
+        sort_by_index(&mut self.laws, |(driver, ..)| driver.0);
         self.laws.dedup_by(|next, known| {
             let same = (next.0, next.1) == (known.0, known.1);
             if same {

@@ -6,6 +6,7 @@
 use std::collections::VecDeque;
 
 use crate::law::Law;
+use crate::order::sort_by_number;
 
 /// Part of its size by which a law may leave the range of its values at the ends of a step within the step: far below
 /// the part of a load to which a limit load is known.
@@ -110,7 +111,7 @@ impl ChangingLaw<'_> {
                 open.extend([[a, middle], [middle, b]]);
             }
         }
-        parts.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        sort_by_number(&mut parts, |part| part[0]);
         // The extrema of the values at their ends; smaller changes than these are no turns.
         let least = OVERSHOOT * self.size;
         let mut turns = Vec::new();

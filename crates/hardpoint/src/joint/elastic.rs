@@ -7,6 +7,7 @@
 use std::sync::{Mutex, PoisonError};
 
 use crate::constraint::Row;
+use crate::order::sort_by_index;
 
 use super::{CoordinateType, Freedom, JointType, Quantity};
 
@@ -82,7 +83,7 @@ fn make(rigid: &'static JointType, directions: [bool; DIRECTIONS]) -> Option<Ela
         std::mem::swap(third, z);
     }
     if is_simple {
-        freedoms.sort_by_key(|f| match f {
+        sort_by_index(&mut freedoms, |f| match f {
             Freedom::Slide(k) => *k,
             Freedom::Turn(k) => 3 + k,
             Freedom::Ball => DIRECTIONS,

@@ -1,5 +1,7 @@
 //! Times at which a law may jump, as its kind finds them.
 
+use crate::order::sort_by_number;
+
 /// Breaks closer together than this, relative to the requested times, are merged.
 pub(super) const SAME_TIME: f64 = 1e-12;
 
@@ -46,7 +48,7 @@ impl Break {
 
 /// Breaks in order of time; those at the same time are merged.
 pub(super) fn merged(mut breaks: Vec<Break>, same_time: f64) -> Vec<Break> {
-    breaks.sort_by(|a, b| a.time.total_cmp(&b.time));
+    sort_by_number(&mut breaks, |at| at.time);
     let mut merged: Vec<Break> = Vec::new();
     for at in breaks {
         match merged.last_mut() {

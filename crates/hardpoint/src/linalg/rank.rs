@@ -3,6 +3,8 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
+use crate::order::sort_by_index;
+
 /// Largest number of columns for which the pivot is searched in the whole matrix. The search takes n^3 operations: 10
 /// ms at this size, seconds with a thousand columns, where threshold pivots in sparse rows take milliseconds.
 const LARGEST_COMPLETE: usize = 100;
@@ -126,7 +128,7 @@ impl Sparse {
         let (mut rows_of, mut counts) = (vec![Vec::new(); n], vec![0; n]);
         for (r, row) in rows.iter_mut().enumerate() {
             row.retain(|(_, x)| *x != 0.0);
-            row.sort_unstable_by_key(|(c, _)| *c);
+            sort_by_index(row, |(c, _)| *c);
             for &(c, _) in row.iter() {
                 rows_of[c].push(r);
                 counts[c] += 1;
@@ -169,7 +171,7 @@ impl Sparse {
         let most = self.rows[r].iter().map(|(_, x)| x.abs()).fold(0.0, f64::max);
         let enough = f64::max(THRESHOLD * most, stage);
         let mut large: Vec<_> = self.rows[r].iter().filter(|(_, x)| x.abs() >= enough).collect();
-        large.sort_by_key(|(c, _)| self.counts[*c]);
+        sort_by_index(&mut large, |(c, _)| self.counts[*c]);
         let is_chosen = |(c, x): &&&(usize, f64)| {
             let others = self.rows_of[*c].iter().filter(|&&r| !self.done[r]);
             others.into_iter().all(|&other| self.entry(other, *c).abs() * CHOICE <= x.abs())

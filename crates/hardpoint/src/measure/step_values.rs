@@ -7,6 +7,7 @@ use hardpoint_tape::{LANES, Lanes, Number};
 
 use crate::blocks::{AlignedLanes, Blocks};
 use crate::model::Model;
+use crate::order::sort_by_index;
 
 /// A measure that was recorded with a step.
 pub(crate) struct RecordedValue {
@@ -32,7 +33,7 @@ impl RecordedValues {
     /// All numbers in the order of [`StepValues::take_recorded`]: the excess of each measure, values, then derivatives
     /// variable by variable.
     pub fn numbers(mut self) -> Vec<Number> {
-        self.0.sort_by_key(|found| found.measure);
+        sort_by_index(&mut self.0, |found| found.measure);
         let excess = self.0.iter().map(|found| found.excess);
         let numbers = self.0.first().map_or(0, |found| found.numbers.len());
         let found = (0..numbers).flat_map(|n| self.0.iter().map(move |found| found.numbers[n]));

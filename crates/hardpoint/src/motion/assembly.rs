@@ -10,6 +10,7 @@
 use crate::joint::Freedom;
 use crate::linalg::Elimination;
 use crate::model::{BodyId, Contact, StartPlacement};
+use crate::order::sort_by_number;
 use crate::space::{Quat, Vec3};
 use crate::topology::{BlockId, CoordinateId, LoopLink, RowId, RowTerm, Topology};
 
@@ -223,7 +224,7 @@ pub(super) fn other_assemblies(m: &mut Mechanism<'_>, more: &dyn Fn() -> bool) -
     set_drawn(m, &drawn);
     let mut others = found.split_off(1);
     let from = found[0].0.distance;
-    others.sort_by(|(a, _), (b, _)| (a.distance - from).abs().total_cmp(&(b.distance - from).abs()));
+    sort_by_number(&mut others, |(found, _)| (found.distance - from).abs());
     others.into_iter().map(|(_, placements)| placements).collect()
 }
 
@@ -380,7 +381,7 @@ fn gaps(m: &Mechanism<'_>, of_row: impl Fn(RowId) -> f64, least: f64) -> Vec<Gap
             None => gaps.push((Gap { of, size: size.abs(), quantity }, place.unit)),
         }
     }
-    gaps.sort_by(|(a, unit_a), (b, unit_b)| (b.size / unit_b).total_cmp(&(a.size / unit_a)));
+    sort_by_number(&mut gaps, |(gap, unit)| -gap.size / unit);
     gaps.into_iter().map(|(gap, _)| gap).collect()
 }
 

@@ -16,6 +16,7 @@ use crate::model::{
 };
 use crate::motion::{Motion, Stop, StopKind};
 use crate::number::{Dual, Jet, Rates};
+use crate::order::sort_by_number;
 use crate::space::Vec3;
 
 use self::curves::Curves;
@@ -477,7 +478,7 @@ impl Analysis<'_> {
                     }
                 }
             }
-            minima.sort_by(|a, b| a.at.time.total_cmp(&b.at.time));
+            sort_by_number(&mut minima, |found| found.at.time);
             PairClearance {
                 shapes: *shapes,
                 curve: samples.iter().filter(|s| is_output(s.time)).copied().collect(),

@@ -6,6 +6,7 @@
 use crate::measure::Output;
 use crate::model::{JointLimit, LimitEnd, Model, OutputSource, VariableId};
 use crate::motion::{Stop, StopKind};
+use crate::order::sort_by_number;
 
 use super::curve::{SampledCurve, crossing};
 use super::request::Scope;
@@ -286,7 +287,7 @@ impl Analysis<'_> {
         if solution.motion.is_empty() {
             return None;
         }
-        located.sort_by(|a, b| a.time.total_cmp(&b.time));
+        sort_by_number(&mut located, |found| found.time);
         let at_start = |limit: &JointLimit| limit.exceeded(model, curve_of(limit, &solution)?.values[0][0]);
         let begins_beyond = model.joint_limits.iter().map(at_start).collect();
         Some(Crossings { solution, begins_beyond, located })

@@ -17,6 +17,7 @@ use crate::model::{DriverId, GROUND, Model};
 use crate::motion::kinematics::State;
 use crate::motion::level::BINOMIAL;
 use crate::motion::mechanism::{LOCKED, Mechanism};
+use crate::order::sort_by_index;
 use crate::space::{Real, Twist, Wrench};
 use crate::topology::{BlockId, ClosureId, CoordinateId, LinkId, RowId, RowTerm, Topology};
 
@@ -107,7 +108,7 @@ impl Support {
         for (v, field) in fields.iter().enumerate() {
             support.add(topology, &feels, v, field);
         }
-        support.places.sort_unstable_by_key(|p| p.index);
+        sort_by_index(&mut support.places, |p| p.index);
         support.places.dedup_by_key(|p| p.index);
         support
     }

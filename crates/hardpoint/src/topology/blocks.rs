@@ -7,6 +7,7 @@ use petgraph::graph::{DiGraph, NodeIndex};
 
 use crate::linalg::FullPivot;
 use crate::model::{BodyId, JointId, Model};
+use crate::order::sort_by_index;
 
 use super::error::TopologyError;
 use super::matching::match_columns;
@@ -391,7 +392,7 @@ fn order_links(topology: &mut Topology, blocks: usize) {
         topology[k].stage = stage;
     }
     let mut order: Vec<LinkId> = topology.link_ids().collect();
-    order.sort_by_key(|&k| topology[k].stage);
+    sort_by_index(&mut order, |k| topology[*k].stage);
     let mut new_place = vec![LinkId(0); order.len()];
     for (new, old) in LinkId::each(&order) {
         new_place[old.0] = new;

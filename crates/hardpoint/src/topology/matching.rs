@@ -1,5 +1,7 @@
 //! Assignment of rows to the unknowns that they determine.
 
+use crate::order::sort_by_index;
+
 /// Computes a maximum matching of columns and rows that contain them; returns the row of each column.
 ///
 /// Hopcroft and Karp's algorithm. First every row takes a free column, rows with the fewest columns first and then in
@@ -15,7 +17,7 @@ pub(super) fn match_columns(rows: &[Vec<usize>], columns: usize) -> Vec<Option<u
     let mut row_of: Vec<Option<usize>> = vec![None; columns];
     let mut column_of: Vec<Option<usize>> = vec![None; rows.len()];
     let mut order: Vec<usize> = (0..rows.len()).collect();
-    order.sort_by_key(|&r| rows[r].len());
+    sort_by_index(&mut order, |r| rows[*r].len());
     for r in order {
         if let Some(&c) = rows[r].iter().find(|&&c| row_of[c].is_none()) {
             (row_of[c], column_of[r]) = (Some(r), Some(c));
