@@ -276,19 +276,17 @@ describe('work on a design', () => {
     expect(await over('plot-0')).toBe('over left.wheel_travel')
     await page.getByTestId('write-cases').click()
     await page.getByTestId('derived-motion').waitFor({ state: 'detached' })
+    await expect
+      .poll(() => page.getByTestId('case').locator('option').allInnerTexts())
+      .toEqual(['bump', 'steering', 'all_drivers'])
     await ready(page)
-    expect(await page.getByTestId('case').locator('option').allInnerTexts()).toEqual([
-      'bump',
-      'steering',
-      'all_drivers',
-    ])
     expect(await over('plot-0')).toBe('over left.wheel_travel')
     expect(await toml()).toContain('[cases.bump]\nlaws = { left_bump = "60*sin(4*pi*t)" }')
     await page.getByTestId('undo').click()
     await page.getByTestId('own-motion').click()
     await page.getByTestId('derived-motion').waitFor({ state: 'detached' })
+    await expect.poll(() => over('plot-0')).toBe('over time')
     await ready(page)
-    expect(await over('plot-0')).toBe('over time')
     await settles(page, () => page.getByTestId('reset-all').click())
     await page.reload()
     await ready(page)
