@@ -45,7 +45,7 @@ use outcome::Outcome;
 use session::Session;
 
 /// Arguments of a command line. A negative number after an option is its value, so that the message is about its range.
-fn parsed(arguments: impl IntoIterator<Item = OsString>) -> Result<Arguments, clap::Error> {
+fn parse_arguments(arguments: impl IntoIterator<Item = OsString>) -> Result<Arguments, clap::Error> {
     let mut command = Arguments::command().mut_subcommands(|one| {
         one.mut_args(|arg| {
             let has_value = arg.get_long().is_some() && arg.get_action().takes_values();
@@ -58,7 +58,7 @@ fn parsed(arguments: impl IntoIterator<Item = OsString>) -> Result<Arguments, cl
 
 /// Runs the command and returns its exit code. The first argument is the name of the program.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
-    let arguments = match parsed(arguments) {
+    let arguments = match parse_arguments(arguments) {
         Ok(arguments) => arguments,
         Err(error) => {
             // Help and version are results, everything else is an error.
