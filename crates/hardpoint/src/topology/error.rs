@@ -36,14 +36,14 @@ pub enum TopologyError {
         bodies: Vec<String>,
     },
     /// Over-driven: drivers prescribe more coordinates than there are degrees of freedom (HP0302).
-    #[error("{}", over_driven_text(.driver_names.len(), .released_names, *.mobility))]
+    #[error("{}", over_driven_text(.driver_names, *.released, *.mobility))]
     OverDriven {
         /// Contradicting drivers: those that are held, then those that an equilibrium releases.
         drivers: Vec<DriverId>,
-        /// Names of those that are held, in the same order.
+        /// Names, in the same order.
         driver_names: Vec<String>,
-        /// Names of those that an equilibrium releases, and for which no motion is left.
-        released_names: Vec<String>,
+        /// Number of the last ones, which an equilibrium releases, and for which no motion is left.
+        released: usize,
         /// Degrees of freedom that these drivers prescribe; other drivers may prescribe further ones.
         mobility: usize,
         /// Joints whose constraints fail.
@@ -73,14 +73,16 @@ pub enum TopologyError {
     },
 }
 
-fn over_driven_text(drivers: usize, released: &[String], mobility: usize) -> String {
-    let prescribe = if drivers == 1 { "driver prescribes" } else { "drivers prescribe" };
+fn over_driven_text(drivers: &[String], released: usize, mobility: usize) -> String {
+    let (held, released) = drivers.split_at(drivers.len() - released);
+    let prescribe = if held.len() == 1 { "driver prescribes" } else { "drivers prescribe" };
     let degrees = if mobility == 1 { "degree" } else { "degrees" };
     let left = match released.is_empty() {
         true => String::new(),
         false => format!(", which leaves none to the released {}", dozen(released)),
     };
-    format!("the mechanism is over-driven: {drivers} {prescribe} {mobility} {degrees} of freedom{left}")
+    let held = held.len();
+    format!("the mechanism is over-driven: {held} {prescribe} {mobility} {degrees} of freedom{left}")
 }
 
 fn under_driven_text(freedom: usize, bodies: &[String], unconnected: &[String]) -> String {
@@ -102,7 +104,7 @@ fn elastic_loop_text(joint: &str, cut: &CutReason) -> String {
 }
 
 /// Joins names with commas. A longer list is cut after twelve names, with the number of the others.
-fn dozen(names: &[impl AsRef<str>]) -> String {
+fn dozen(names: &[String]) -> String {
     some_of(names, ", ", 12)
 }
 
@@ -120,11 +122,11 @@ impl TopologyError {
 
     /// The error without the openings of elastic joints, which are drivers from `first` on.
     pub(crate) fn without_openings(mut self, first: DriverId) -> Self {
-        if let Self::OverDriven { drivers, driver_names, mobility, .. } = &mut self {
-            let held = driver_names.len();
+        if let Self::OverDriven { drivers, driver_names, released, mobility, .. } = &mut self {
+            let held = drivers.len() - *released;
             let own = drivers[..held].partition_point(|d| *d < first);
-            driver_names.truncate(own);
             drivers.drain(own..held);
+            driver_names.drain(own..held);
             *mobility = mobility.saturating_sub(held - own);
         }
         self
@@ -155,13 +157,10 @@ impl TopologyError {
                 ),
                 format!("joints of that motion: {}", dozen(joint_names)),
             ],
-            Self::OverDriven { driver_names, released_names, joint_names, .. } => {
-                let all: Vec<&String> = driver_names.iter().chain(released_names).collect();
-                vec![
-                    format!("contradicting drivers: {}", dozen(&all)),
-                    format!("constraints that fail: {}", dozen(joint_names)),
-                ]
-            }
+            Self::OverDriven { driver_names, joint_names, .. } => vec![
+                format!("contradicting drivers: {}", dozen(driver_names)),
+                format!("constraints that fail: {}", dozen(joint_names)),
+            ],
             Self::Immovable { joint_names, .. } => {
                 vec![format!("constraints that fail with any motion: {}", dozen(joint_names))]
             }
@@ -187,9 +186,8 @@ impl TopologyError {
             }
             Self::Singular { .. } => "move the design configuration a little along its motion, away from the position in which its links line up; if the mechanism moves only because of its special proportions, add a driver on one of these joints"
                 .into(),
-            Self::OverDriven { driver_names, released_names, mobility, .. } => {
-                let all = driver_names.len() + released_names.len();
-                let excess = match all.saturating_sub(*mobility) {
+            Self::OverDriven { driver_names, mobility, .. } => {
+                let excess = match driver_names.len().saturating_sub(*mobility) {
                     0 | 1 => "one".into(),
                     n => n.to_string(),
                 };
@@ -320,9 +318,9 @@ pub(super) fn contradiction(
     let excess = model.drivers.len() - topology.mobility;
     let mobility = drivers.len().saturating_sub(excess);
     let is_released = |d: &DriverId| model.equilibrium.iter().any(|e| e.released.contains(d));
-    let (released, mut drivers): (Vec<DriverId>, Vec<DriverId>) = drivers.into_iter().partition(is_released);
-    let names = |of: &[DriverId]| of.iter().map(|d| format!("`{}`", model.drivers[d.0].name)).collect();
-    let (driver_names, released_names) = (names(&drivers), names(&released));
-    drivers.extend(released);
-    TopologyError::OverDriven { drivers, driver_names, released_names, mobility, joints, joint_names }
+    let (last, mut drivers): (Vec<DriverId>, Vec<DriverId>) = drivers.into_iter().partition(is_released);
+    let released = last.len();
+    drivers.extend(last);
+    let driver_names = drivers.iter().map(|d| format!("`{}`", model.drivers[d.0].name)).collect();
+    TopologyError::OverDriven { drivers, driver_names, released, mobility, joints, joint_names }
 }
