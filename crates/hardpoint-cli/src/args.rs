@@ -266,7 +266,7 @@ pub struct Synthesize {
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
     /// Number of answers [default: that of the file, or 10]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = count)]
     pub answers: Option<NonZero<usize>>,
     /// Print one JSON document instead of text
     #[arg(long)]
@@ -395,6 +395,11 @@ pub struct Run {
 fn pdf_part(text: &str) -> Result<PdfPart, String> {
     let names = PdfPart::ALL.map(|part| format!("`{}`", part.name())).join(", ");
     PdfPart::of(text).ok_or_else(|| format!("`{text}` is not a part of the report; give some of {names}"))
+}
+
+/// Number of things, of which there is at least one.
+fn count(text: &str) -> Result<NonZero<usize>, String> {
+    text.parse().map_err(|_| format!("{text} is not a whole number from 1"))
 }
 
 /// Help on the maximum number of iterations of an optimisation.
@@ -737,7 +742,7 @@ pub struct Optimize {
     pub save: Option<PathBuf>,
     /// Number of starts: the nominal design and others spread within the bounds [default: that of the
     /// file, or 1]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = count)]
     pub starts: Option<NonZero<usize>>,
     /// Start from the other assemblies of the mechanism too, with the same number of starts each
     #[arg(long)]
@@ -746,14 +751,14 @@ pub struct Optimize {
     #[arg(long)]
     pub both_senses: bool,
     /// Maximum number of iterations of a search
-    #[arg(long, value_name = "N", help = iterations_help("a search"))]
+    #[arg(long, value_name = "N", help = iterations_help("a search"), value_parser = count)]
     pub iterations: Option<NonZero<usize>>,
     /// Report and save the N-th of the distinct optima that the starts ended in [default: the best]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = count)]
     pub optimum: Option<NonZero<usize>>,
     /// Number of threads for several starts; the result does not depend on it [default: one per
     /// core]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = count)]
     pub threads: Option<NonZero<usize>>,
 }
 
@@ -901,7 +906,7 @@ pub struct TradeOff {
     #[arg(long, value_name = "GOALS", value_delimiter = ',')]
     pub goals: Vec<String>,
     /// Number of designs on the front [default: 15 for two goals, 45 for three]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = count)]
     pub points: Option<NonZero<usize>>,
     /// Write a report with a plot of the front, front.csv and summary.json into this folder
     #[arg(short, long, value_name = "DIR")]
@@ -913,13 +918,13 @@ pub struct TradeOff {
     #[arg(long, value_name = "K")]
     pub point: Option<usize>,
     /// Number of starts of the search for the optimum of each goal [default: that of the file, or 1]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = count)]
     pub starts: Option<NonZero<usize>>,
     /// Maximum number of iterations of such a search
-    #[arg(long, value_name = "N", help = iterations_help("such a search"))]
+    #[arg(long, value_name = "N", help = iterations_help("such a search"), value_parser = count)]
     pub iterations: Option<NonZero<usize>>,
     /// Number of threads for several starts; the result does not depend on it [default: one per core]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = count)]
     pub threads: Option<NonZero<usize>>,
 }
 
@@ -945,7 +950,7 @@ pub struct Tolerance {
     #[arg(long, value_enum, value_name = "RULE")]
     pub allocate: Option<Allocate>,
     /// Number of threads; the result does not depend on it [default: one per core]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = count)]
     pub threads: Option<NonZero<usize>>,
 }
 
@@ -1013,7 +1018,7 @@ pub struct Calibrate {
     #[arg(long, value_enum, default_value_t = LossKind::Squares)]
     pub loss: LossKind,
     /// Maximum number of iterations
-    #[arg(long, value_name = "N", default_value = "100")]
+    #[arg(long, value_name = "N", default_value = "100", value_parser = count)]
     pub iterations: NonZero<usize>,
     /// Write the model file with the fitted design; comments and layout are kept
     #[arg(long, value_name = "FILE")]
@@ -1091,7 +1096,7 @@ pub struct Sweep {
     #[arg(long, value_enum, default_value_t = TableForm::Csv)]
     pub format: TableForm,
     /// Number of threads; the result does not depend on it [default: one per core]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = count)]
     pub threads: Option<NonZero<usize>>,
     /// Start again if the folder has an unfinished sweep
     #[arg(long)]

@@ -93,7 +93,10 @@ fn a_negative_number_after_an_option_is_its_value() {
     let bench = Bench::with(&[]);
     for (arguments, expected) in [
         (["sweep", "four_bar.toml", "--samples", "-5"], "'-5' for '--samples <N>': -5 is not in "),
-        (["optimize", "four_bar.toml", "--starts", "-1"], "'-1' for '--starts <N>': -1 is not in "),
+        (
+            ["optimize", "four_bar.toml", "--starts", "-1"],
+            "'-1' for '--starts <N>': -1 is not a whole number from 1",
+        ),
     ] {
         let output = bench.run(&arguments);
         let text = String::from_utf8(output.stderr).unwrap();

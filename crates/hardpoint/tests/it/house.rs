@@ -9,7 +9,8 @@ use self::code::{below, production, uses};
 
 /// The rooms of the core, in the order of the walk: each may use those before it only. What somebody wrote (`draft`)
 /// knows the model that it means, and so comes after it; results are kept in `blocks`.
-const ROOMS: [&str; 20] = [
+const ROOMS: [&str; 21] = [
+    "order",
     "number",
     "linalg",
     "space",
