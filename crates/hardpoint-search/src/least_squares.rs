@@ -10,16 +10,6 @@
 //! Coleman and Li, *An interior trust region approach for nonlinear minimization subject to bounds*, SIAM J. Optim. 6
 //! (1996). A step that leaves the bounds is shortened, reflected by the first bound, or replaced by one along the
 //! gradient, whichever promises most (Branch, Coleman and Li, SIAM J. Sci. Comput. 21 (1999)).
-//!
-//! A step p within the bounds is bent towards the floor of a curved valley (geodesic acceleration: Transtrum, Machta
-//! and Sethna, Phys. Rev. E 83 (2011)):
-//!
-//! ```text
-//! a  =  -(J^T J + damping)^-1 J^T r''(p, p) / 2,    r''(p, p) = (J - J_0) (2 c p - c^2 s),    c = p . s / s . s
-//! ```
-//!
-//! with s the step from a former point, where the derivatives were J_0, and the damping of p. What p has beside s is
-//! bent to first order only, so that the second derivative costs no evaluation.
 
 use hardpoint::linalg::folded_rows;
 
@@ -46,28 +36,12 @@ const FULL: f64 = 0.95;
 const LONGER: f64 = 1e-2;
 /// Maximum number of Newton steps for the damping of a step with the length of the radius.
 const DAMPINGS: usize = 50;
-/// Number of former points whose derivatives are known ...
-const FORMER: usize = 4;
-/// ... and the cosine between a step and that from one of them, above which the step is bent.
-const ALIKE: f64 = 0.5;
-/// Steps are bent after one that gains less than this fraction of the objective: in a valley.
-const SLOW: f64 = 0.1;
-/// A bend is used up to this fraction of its step.
-const BENT: f64 = 0.5;
-/// Minimum damping of bends, as a fraction of the largest curvature: second derivatives are differences.
-const LEAST_DAMPING: f64 = 1e-12;
 
 /// Residuals at a point, of order one at the start; NaN if the point cannot be evaluated, so that the solver steps
 /// back.
 pub type Residuals<'p> = Box<dyn Fn(&[f64]) -> Vec<f64> + 'p>;
 /// Derivatives of the residuals, one row per residual.
 pub type Derivatives<'p> = Box<dyn Fn(&[f64]) -> Vec<Vec<f64>> + 'p>;
-
-/// Former point with its derivatives.
-struct Former {
-    x: Vec<f64>,
-    rows: Vec<Vec<f64>>,
-}
 
 /// Solver between iterations.
 pub struct LeastSquares<'p> {
@@ -78,12 +52,6 @@ pub struct LeastSquares<'p> {
     r: Vec<f64>,
     rows: Vec<Vec<f64>>,
     radius: Option<f64>,
-    /// Former points, the last one first.
-    former: Vec<Former>,
-    /// True if steps are bent.
-    is_accelerated: bool,
-    /// Last decrease as a fraction of the objective.
-    progress: f64,
 }
 
 impl<'p> LeastSquares<'p> {
@@ -96,42 +64,7 @@ impl<'p> LeastSquares<'p> {
     ) -> Self {
         let x: Vec<f64> = start.iter().map(|x| inside(*x, bounds, START_INSIDE)).collect();
         let (r, rows) = (residuals(&x), derivatives(&x));
-        let (radius, former, is_accelerated, progress) = (None, Vec::new(), false, 1.0);
-        Self { bounds, residuals, derivatives, x, r, rows, radius, former, is_accelerated, progress }
-    }
-
-    /// The same solver with steps that are bent. The residuals of all points correspond to each other; where their
-    /// number changes, steps remain straight.
-    #[must_use]
-    pub fn accelerated(mut self) -> Self {
-        self.is_accelerated = true;
-        self
-    }
-
-    /// Bend `a` of a step p in the coordinates z of a model; `None` if no former step had its direction, or the bend is
-    /// too large to be trusted.
-    fn bend(&self, model: &Model<'_>, Step { z, damping }: &Step) -> Option<Vec<f64>> {
-        let damping = damping.filter(|_| self.is_accelerated && self.progress < SLOW)?;
-        let p: Vec<f64> = z.iter().zip(&model.d).map(|(z, d)| z * d).collect();
-        let from =
-            |former: &Former| -> Vec<f64> { self.x.iter().zip(&former.x).map(|(a, b)| a - b).collect() };
-        let known = self.former.iter().filter(|former| former.rows.len() == self.rows.len());
-        let directions = known.map(|former| (from(former), former));
-        let cosine = |s: &[f64]| dot(s, &p).abs() / (norm(s) * norm(&p));
-        let (s, former) = directions.max_by(|(s, _), (t, _)| cosine(s).total_cmp(&cosine(t)))?;
-        if !(cosine(&s) >= ALIKE) {
-            return None;
-        }
-        let c = dot(&s, &p) / dot(&s, &s);
-        let v: Vec<f64> = p.iter().zip(&s).map(|(p, s)| 2.0 * c * p - c * c * s).collect();
-        let second = self.rows.iter().zip(&former.rows).map(|(row, before)| dot(row, &v) - dot(before, &v));
-        let mut back = vec![0.0; p.len()];
-        for (row, second) in self.rows.iter().zip(second) {
-            back.iter_mut().zip(row).for_each(|(back, d)| *back += 0.5 * d * second);
-        }
-        back.iter_mut().zip(&model.d).for_each(|(back, d)| *back *= d);
-        let a = model.damped(&back, damping);
-        (norm(&a) <= BENT * norm(z)).then_some(a)
+        Self { bounds, residuals, derivatives, x, r, rows, radius: None }
     }
 
     /// Performs one iteration and returns the new point; `None` at the end.
@@ -143,15 +76,9 @@ impl<'p> LeastSquares<'p> {
         });
         for _ in 0..TRIALS {
             let step = model.step_within(radius);
-            let bend = self.bend(&model, &step);
-            let Step { z: mut step, .. } = step;
-            // The promise is that of the straight step.
-            let straight = bend.as_ref().map(|_| step.clone());
-            step.iter_mut().zip(bend.iter().flatten()).for_each(|(z, a)| *z += a);
             let to = |k: usize| inside(self.x[k] + model.d[k] * step[k], self.bounds, f64::EPSILON);
             let next: Vec<f64> = (0..self.x.len()).map(to).collect();
             let step: Vec<f64> = (0..next.len()).map(|k| (next[k] - self.x[k]) / model.d[k]).collect();
-            let step = straight.unwrap_or(step);
             let (length, promise) = (norm(&step), -model.change(&step));
             if !(length > 0.0 && promise > 0.0) {
                 return None;
@@ -164,12 +91,7 @@ impl<'p> LeastSquares<'p> {
                 radius *= 2.0;
             }
             if gain > 0.0 {
-                self.progress = 2.0 * gain / dot(&self.r, &self.r);
-                let rows = std::mem::replace(&mut self.rows, (self.derivatives)(&next));
-                if self.is_accelerated {
-                    self.former.insert(0, Former { x: self.x.clone(), rows });
-                    self.former.truncate(FORMER);
-                }
+                self.rows = (self.derivatives)(&next);
                 (self.x, self.r, self.radius) = (next, r, Some(radius));
                 return Some(self.x.clone());
             }
@@ -182,12 +104,6 @@ impl<'p> LeastSquares<'p> {
 fn inside(x: f64, [low, high]: [f64; 2], part: f64) -> f64 {
     let least = part * (high - low);
     x.clamp(low + least, high - least)
-}
-
-/// Step in the coordinates z of a model, with its damping; `None` if bounds have changed the step.
-struct Step {
-    z: Vec<f64>,
-    damping: Option<f64>,
 }
 
 /// Quadratic model of the objective at a point, in the coordinates z.
@@ -252,20 +168,8 @@ impl<'a> Model<'a> {
         dot(&self.g, z) + 0.5 * dot(&by_rows, &by_rows)
     }
 
-    /// Solution `-(A^T A + damping)^-1 b`.
-    fn damped(&self, b: &[f64], damping: f64) -> Vec<f64> {
-        let Singular { values, directions, .. } = &self.singular;
-        let damping = damping.max(LEAST_DAMPING * values[0] * values[0]);
-        let mut z = vec![0.0; b.len()];
-        for (value, v) in values.iter().zip(directions) {
-            let by = dot(v, b) / (value * value + damping);
-            z.iter_mut().zip(v).for_each(|(z, v)| *z -= by * v);
-        }
-        z
-    }
-
-    /// Step that minimises the model within a radius, without bounds, and its damping.
-    fn unbounded_step(&self, radius: f64) -> (Vec<f64>, f64) {
+    /// Step that minimises the model within a radius, without bounds.
+    fn unbounded_step(&self, radius: f64) -> Vec<f64> {
         let Singular { values, directions, images } = &self.singular;
         let n = self.x.len();
         let least = f64::EPSILON * n as f64 * values[0];
@@ -288,7 +192,7 @@ impl<'a> Model<'a> {
         }
         let scale = (radius / norm(&z)).min(1.0);
         let by = |k: usize| (0..rank).map(|j| directions[j][k] * z[j]).sum::<f64>();
-        ((0..n).map(|k| scale * by(k)).collect(), damping)
+        (0..n).map(|k| scale * by(k)).collect()
     }
 
     /// Largest multiple of a step from a point that is within the bounds.
@@ -305,11 +209,11 @@ impl<'a> Model<'a> {
     }
 
     /// Step that reduces the model within a radius and the bounds.
-    fn step_within(&self, radius: f64) -> Step {
-        let (p, damping) = self.unbounded_step(radius);
+    fn step_within(&self, radius: f64) -> Vec<f64> {
+        let p = self.unbounded_step(radius);
         let room = self.room(self.x, &p);
         if room >= 1.0 {
-            return Step { z: p, damping: Some(damping) };
+            return p;
         }
         let none = vec![0.0; p.len()];
         let to_bound: Vec<f64> = p.iter().map(|p| room * p).collect();
@@ -329,7 +233,7 @@ impl<'a> Model<'a> {
         let longest = (radius / norm(&downhill)).min(self.way * self.room(self.x, &downhill));
         candidates.push(self.least_along(&none, &downhill, [0.0, longest]));
         let best = candidates.into_iter().min_by(|a, b| self.change(a).total_cmp(&self.change(b)));
-        Step { z: best.unwrap_or(none), damping: None }
+        best.unwrap_or(none)
     }
 
     /// Point with the least value on a line: `from + t z` for t in a range.
@@ -385,38 +289,6 @@ mod tests {
         let (x, count) = minimum(&[-1.2, 1.0], [-2.0, 2.0], residuals, derivatives);
         assert!(x.iter().all(|x| (x - 1.0).abs() < 1e-12), "{x:?}");
         assert!(count < 40, "{count} evaluations");
-    }
-
-    #[test]
-    fn bent_steps_follow_a_curved_valley_with_fewer_evaluations() {
-        // A valley along y = sin 3x with a gentle slope to x = 1, of residuals that do not vanish
-        let residuals = |x: &[f64]| {
-            vec![100.0 * (x[1] - (3.0 * x[0]).sin()), 0.1 * (1.0 - x[0]), 0.2 + 0.01 * x[0] * x[0]]
-        };
-        let derivatives = |x: &[f64]| {
-            vec![vec![-300.0 * (3.0 * x[0]).cos(), 100.0], vec![-0.1, 0.0], vec![0.02 * x[0], 0.0]]
-        };
-        let count = |is_accelerated: bool| {
-            let count = std::cell::Cell::new(0);
-            let counted = |x: &[f64]| {
-                count.set(count.get() + 1);
-                residuals(x)
-            };
-            let mut solver =
-                LeastSquares::new(&[-1.8, 0.5], [-2.0, 2.0], Box::new(counted), Box::new(derivatives));
-            if is_accelerated {
-                solver = solver.accelerated();
-            }
-            let mut x = Vec::new();
-            while let Some(next) = solver.step() {
-                x = next;
-            }
-            drop(solver);
-            (x, count.get())
-        };
-        let ((straight, many), (bent, few)) = (count(false), count(true));
-        assert!((0..2).all(|k| (straight[k] - bent[k]).abs() < 1e-6), "{straight:?} {bent:?}");
-        assert!(2 * few < many, "{few} evaluations instead of {many}");
     }
 
     #[test]

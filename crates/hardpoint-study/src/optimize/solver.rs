@@ -6,6 +6,7 @@ use std::cell::RefCell;
 
 use crate::evaluation::StudyCost;
 use crate::recent::Recent;
+use hardpoint::linalg::folded_rows;
 use hardpoint_search::{LeastSquares, Program, Sequential, independent};
 
 use super::problem::{LimitRow, Point, Problem, Refusal, Rows};
@@ -72,20 +73,34 @@ pub(super) fn least_squares<'p>(memory: &'p Memory<'p>, start: &[f64], point: &P
     let spans = memory.problem.spans();
     let size = point.misfits.values.iter().map(|r| r * r).sum::<f64>().sqrt();
     let scale = if size > 0.0 { 1.0 / size } else { 1.0 };
+    let same = spans.clone();
     let residuals = move |x: &[f64]| {
-        memory.at(x, |found| match found {
-            Ok(point) => point.misfits.values.iter().map(|r| scale * r).collect(),
-            Err(_) => vec![f64::NAN],
-        })
+        let rows = folded_misfits(memory, &spans, scale, x);
+        rows.iter().map(|row| row[x.len()]).collect()
     };
     let derivatives = move |x: &[f64]| {
-        let by = |d: &Vec<f64>| d.iter().zip(&spans).map(|(d, span)| scale * span * d).collect();
-        memory.at(x, |found| match found {
-            Ok(point) => point.misfits.d.iter().map(by).collect(),
-            Err(_) => vec![vec![f64::NAN; x.len()]],
-        })
+        let rows = folded_misfits(memory, &same, scale, x);
+        rows.into_iter()
+            .map(|mut row| {
+                row.truncate(x.len());
+                row
+            })
+            .collect()
     };
-    LeastSquares::new(start, [0.0, 1.0], Box::new(residuals), Box::new(derivatives)).accelerated()
+    LeastSquares::new(start, [0.0, 1.0], Box::new(residuals), Box::new(derivatives))
+}
+
+/// Misfits of a design with their derivatives, `[J r]`, reduced to one row for every variable plus one with the same
+/// squares and products, since the number of misfits depends on the times at which a design was solved.
+fn folded_misfits(memory: &Memory<'_>, spans: &[f64], scale: f64, x: &[f64]) -> Vec<Vec<f64>> {
+    memory.at(x, |found| {
+        let Ok(point) = found else { return vec![vec![f64::NAN; x.len() + 1]; x.len() + 1] };
+        let Rows { values, d } = &point.misfits;
+        let by = |v: usize| d.iter().map(|d| scale * spans[v] * d[v]).collect();
+        let mut columns: Vec<Vec<f64>> = (0..x.len()).map(by).collect();
+        columns.push(values.iter().map(|r| scale * r).collect());
+        folded_rows(columns)
+    })
 }
 
 impl Solver for LeastSquares<'_> {
