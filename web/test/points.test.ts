@@ -132,9 +132,7 @@ describe('the reason why a design is not the requested one', () => {
   test('is about the design in hand, with the time at which it locks', () => {
     const locks = 'the changed design: the mechanism cannot move beyond t = 0.776887 s'
     expect(stopReason(locks, true)).toBe('Locks at t = 0.777 s; shown is the last position that works')
-    expect(stopReason('the mechanism cannot move beyond t = 6.038286e-7 s', false)).toMatch(
-      /^Locks at t = 6\.04e−7 s/,
-    )
+    expect(stopReason('the mechanism cannot move beyond t = 6.038286e-7 s', false)).toMatch(/^Locks at t = 6\.04e−7 s/)
     expect(
       stopReason('the changed design: the mechanism locks at t = 0.5 s: joint `a` cannot stay closed', false),
     ).toBe('Locks at t = 0.5 s: joint `a` cannot stay closed')
